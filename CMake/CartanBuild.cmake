@@ -1,0 +1,80 @@
+# The parts of the stand-alone project, one function each.
+
+# The folders in the install tree, and in the same places in the build tree.
+set(CARTAN_CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/Cartan")
+if (VTK_WRAP_PYTHON)
+  vtk_module_python_default_destination(CARTAN_PYTHON_DESTINATION)
+endif ()
+
+# The library. vtk_module_build() enters the folder of vtk.module again and
+# names its build folder after CMAKE_BINARY_DIR; the change of that variable,
+# local to this function, keeps it from being the one already in use.
+function (cartan_build_module)
+  vtk_module_scan(
+    MODULE_FILES      "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module"
+    REQUEST_MODULES   VTK::Cartan
+    PROVIDES_MODULES  modules
+    REQUIRES_MODULES  required_modules # imported by find_package(VTK)
+    HIDE_MODULES_FROM_CACHE ON)
+
+  set(CMAKE_BINARY_DIR "${CMAKE_BINARY_DIR}/Module")
+  vtk_module_build(
+    MODULES             ${modules}
+    PACKAGE             Cartan
+    INSTALL_EXPORT      Cartan
+    HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/cartan"
+    CMAKE_DESTINATION   "${CARTAN_CMAKE_DESTINATION}"
+    TEST_DIRECTORY_NAME NONE # the tests come last, when the plugin is there
+    VERSION             "${PROJECT_VERSION}"
+    SOVERSION           "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+endfunction ()
+
+# The Python package `cartan`.
+function (cartan_wrap_python)
+  vtk_module_wrap_python(
+    MODULES             VTK::Cartan
+    TARGET              CartanPythonWrapped
+    PYTHON_PACKAGE      cartan
+    MODULE_DESTINATION  "${CARTAN_PYTHON_DESTINATION}"
+    LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    CMAKE_DESTINATION   "${CARTAN_CMAKE_DESTINATION}"
+    INSTALL_HEADERS     OFF)
+
+  # The wrapped classes are in the extension module cartan.Cartan; the package
+  # hands them on.
+  set(init "${CMAKE_BINARY_DIR}/${CARTAN_PYTHON_DESTINATION}/cartan/__init__.py")
+  file(CONFIGURE OUTPUT "${init}" CONTENT
+    "\"\"\"Surfaces described, edited and measured by differential quantities.\"\"\"\nfrom .Cartan import *\n")
+  install(FILES "${init}" DESTINATION "${CARTAN_PYTHON_DESTINATION}/cartan" COMPONENT python)
+endfunction ()
+
+function (cartan_build_plugin)
+  paraview_plugin_scan(
+    PLUGIN_FILES      "${CMAKE_CURRENT_SOURCE_DIR}/Plugin/paraview.plugin"
+    PROVIDES_PLUGINS  plugins
+    ENABLE_BY_DEFAULT ON
+    HIDE_PLUGINS_FROM_CACHE ON)
+  paraview_plugin_build(
+    PLUGINS              ${plugins}
+    RUNTIME_DESTINATION  "${CMAKE_INSTALL_BINDIR}"
+    LIBRARY_DESTINATION  "${CMAKE_INSTALL_LIBDIR}"
+    LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}")
+endfunction ()
+
+# What find_package(Cartan) reads.
+function (cartan_install_package)
+  include(CMakePackageConfigHelpers)
+  configure_package_config_file(
+    "${CMAKE_CURRENT_SOURCE_DIR}/CMake/cartan-config.cmake.in"
+    "${CMAKE_CURRENT_BINARY_DIR}/CMake/cartan-config.cmake"
+    INSTALL_DESTINATION "${CARTAN_CMAKE_DESTINATION}")
+  write_basic_package_version_file(
+    "${CMAKE_CURRENT_BINARY_DIR}/CMake/cartan-config-version.cmake"
+    COMPATIBILITY SameMinorVersion)
+  install(
+    FILES
+      "${CMAKE_CURRENT_BINARY_DIR}/CMake/cartan-config.cmake"
+      "${CMAKE_CURRENT_BINARY_DIR}/CMake/cartan-config-version.cmake"
+    DESTINATION "${CARTAN_CMAKE_DESTINATION}"
+    COMPONENT   development)
+endfunction ()

@@ -1,0 +1,34 @@
+# How the stand-alone project compiles. Inside VTK, VTK decides.
+
+get_property(is_multi_config GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
+if (NOT is_multi_config AND NOT CMAKE_BUILD_TYPE)
+  # Eigen without optimisation is fifty times slower: never by accident.
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, RelWithDebInfo, Debug" FORCE)
+endif ()
+
+find_program(CCACHE_PROGRAM ccache)
+mark_as_advanced(CCACHE_PROGRAM)
+if (CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif ()
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+# Only what the export macros name leaves the library; in particular not the
+# Eigen instantiations, which other libraries in the process have as well.
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+
+# For code written here; generated wrappers are not ours to clean up.
+if (CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+  set(CARTAN_WARNING_FLAGS -Wall -Wextra -Wshadow)
+endif ()
+
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
+
+# Installed libraries find a VTK outside the system's folders.
+set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
