@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+namespace cartan
+{
+/// The rotation closest to A in the Frobenius norm: the orthogonal factor of
+/// the polar decomposition, and where det A < 0 the closest one of determinant
+/// +1 (the direction of the smallest singular value is flipped). Where several
+/// are equally close (rank below two) one of them; the identity for A = 0.
+Eigen::Matrix3d ProjectOnRotations(const Eigen::Matrix3d& a);
+
+/// The rotation about the axis of `rotationVector` by its length in radians,
+/// of any size.
+Eigen::Matrix3d RotationFromVector(const Eigen::Vector3d& rotationVector);
+
+/// Whether rotation vectors are all parallel, to a microradian (above what
+/// users' numbers and Euler angles round to); zero vectors fit any axis. Sets
+/// the unit axis, that of the longest; the x axis if all are zero.
+bool FindSharedAxis(const std::vector<Eigen::Vector3d>& rotationVectors, Eigen::Vector3d& axis);
+
+/// Axis times angle in radians, the angle in [0, pi]. Accurate near 0 and pi;
+/// at pi one of the two opposite axes.
+Eigen::Vector3d VectorFromRotation(const Eigen::Matrix3d& rotation);
+}

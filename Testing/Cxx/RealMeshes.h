@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "OffReader.h"
+#include "TestShapes.h"
+
+#include "Kernel/TriangleMesh.h"
+
+#include <iomanip>
+#include <iostream>
+#include <string>
+
+/// Scanned meshes as the kernel sees them, and what several kernel tests do
+/// with surfaces.
+namespace shapes
+{
+/// The scanned mesh of this name ("camel"), with its points as they are.
+inline Shape RealMesh(const std::string& name)
+{
+  const offreader::Mesh mesh = offreader::Read(offreader::MeshPath(name));
+  Shape shape;
+  shape.Positions = Eigen::Map<const cartan::Points>(
+    mesh.Points.data(), static_cast<Eigen::Index>(mesh.Points.size() / 3), 3);
+  shape.Faces = Eigen::Map<const cartan::Triangles>(
+    mesh.Triangles.data(), static_cast<Eigen::Index>(mesh.Triangles.size() / 3), 3);
+  return shape;
+}
+
+inline cartan::TriangleMesh MakeMesh(const Shape& shape)
+{
+  return cartan::TriangleMesh(shape.NumberOfVertices(), shape.Faces);
+}
+
+/// The rigid motion that best maps the rows of `from` on those of `to`.
+inline RigidMotion BestRigidMotion(const cartan::Points& from, const cartan::Points& to)
+{
+  const Eigen::Matrix4d motion = Eigen::umeyama(from.transpose(), to.transpose(), false);
+  return { motion.topLeftCorner<3, 3>(), motion.topRightCorner<3, 1>() };
+}
+
+/// Shows a measured figure beside the bound that a test asserts, for those who
+/// want to know how far from it we are.
+inline void ShowFigure(const std::string& name, double value)
+{
+  std::cout << "[ figure   ] " << name << ": " << std::setprecision(4) << value << std::endl;
+}
+}

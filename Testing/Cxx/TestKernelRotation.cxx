@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Rotation.h"
+
+#include "TestShapes.h"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+using cartan::ProjectOnRotations;
+using cartan::RotationFromVector;
+using cartan::VectorFromRotation;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace
+{
+constexpr double Pi = shapes::Pi;
+
+Matrix3d RandomMatrix(shapes::Random& random)
+{
+  Matrix3d matrix;
+  for (int i = 0; i < 9; ++i)
+  {
+    matrix(i) = random();
+  }
+  return matrix;
+}
+
+Matrix3d RandomRotation(shapes::Random& random)
+{
+  return Eigen::Quaterniond{ random(), random(), random(), random() }
+    .normalized()
+    .toRotationMatrix();
+}
+
+/// The largest trace(R^T A) over all rotations, as the largest eigenvalue of
+/// Davenport's 4 x 4 matrix: no singular values, no determinant, valid for all
+/// signs and ranks. |A - R|^2 = |A|^2 + 3 - 2 trace(R^T A).
+double LargestTrace(const Matrix3d& a)
+{
+  Eigen::Matrix4d k;
+  const Vector3d z(a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1));
+  k.topLeftCorner<3, 3>() = a + a.transpose() - a.trace() * Matrix3d::Identity();
+  k.topRightCorner<3, 1>() = z;
+  k.bottomLeftCorner<1, 3>() = z.transpose();
+  k(3, 3) = a.trace();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(k).eigenvalues().maxCoeff();
+}
+
+void ExpectClosestRotation(const Matrix3d& a)
+{
+  const Matrix3d r = ProjectOnRotations(a);
+  EXPECT_LT((r.transpose() * r - Matrix3d::Identity()).norm(), 1e-13) << a;
+  EXPECT_NEAR(r.determinant(), 1.0, 1e-13) << a;
+  EXPECT_NEAR((r.transpose() * a).trace(), LargestTrace(a), 1e-13 * (1e-300 + a.norm()))
+    << a;
+}
+}
+
+TEST(ClosestRotation, AgreesWithTheQuaternionMethodForAllSignsAndRanks)
+{
+  shapes::Random random(1);
+  int reflections = 0;
+  for (int trial = 0; trial < 2000; ++trial)
+  {
+    const Matrix3d a = RandomMatrix(random);
+    reflections += a.determinant() < 0.0;
+    ExpectClosestRotation(a);
+    // Rank two, one, and nearly so.
+    const Vector3d u(a.col(0));
+    const Vector3d v(a.col(1));
+    ExpectClosestRotation(u * v.transpose() + v * a.row(2));
+    ExpectClosestRotation(u * v.transpose());
+    ExpectClosestRotation(u * v.transpose() + 1e-9 * a);
+    ExpectClosestRotation(u * v.transpose() + v * a.row(2) - 1e-5 * a);
+  }
+  EXPECT_GT(reflections, 500);
+}
+
+TEST(ClosestRotation, IsABetterFitThanItsNeighbors)
+{
+  shapes::Random random(2);
+  for (int trial = 0; trial < 300; ++trial)
+  {
+    const Matrix3d a = RandomMatrix(random);
+    const Matrix3d r = ProjectOnRotations(a);
+    for (int neighbor = 0; neighbor < 10; ++neighbor)
+    {
+      const Vector3d step = 1e-3 * Vector3d{ random(), random(), random() };
+      EXPECT_LE((a - r).norm(), (a - r * RotationFromVector(step)).norm() + 1e-15);
+    }
+  }
+}
+
+TEST(ClosestRotation, OfARotationIsItself)
+{
+  shapes::Random random(3);
+  for (int trial = 0; trial < 1000; ++trial)
+  {
+    const Matrix3d r = RandomRotation(random);
+    EXPECT_LT((ProjectOnRotations(r) - r).norm(), 3e-15);
+    const Matrix3d halfTurn =
+      RotationFromVector(Pi * Vector3d{ random(), random(), random() }.normalized());
+    EXPECT_LT((ProjectOnRotations(halfTurn) - halfTurn).norm(), 3e-15);
+  }
+  EXPECT_LT((ProjectOnRotations(Matrix3d::Identity()) - Matrix3d::Identity()).norm(), 1e-16);
+}
+
+TEST(ClosestRotation, IsTheRotationTimesAStretch)
+{
+  // A = R S with S symmetric and positive definite has R as its rotation.
+  shapes::Random random(4);
+  for (int trial = 0; trial < 1000; ++trial)
+  {
+    const Matrix3d r = RandomRotation(random);
+    const Matrix3d q = RandomRotation(random);
+    const Vector3d stretch = Vector3d{ 1.1 + random(), 1.1 + random(), 1.1 + random() };
+    const Matrix3d a = r * q * stretch.asDiagonal() * q.transpose();
+    EXPECT_LT((ProjectOnRotations(a) - r).norm(), 1e-13);
+    // Turning A turns the result.
+    EXPECT_LT((ProjectOnRotations(q * a) - q * r).norm(), 1e-13);
+  }
+}
+
+TEST(ClosestRotation, FlipsTheSmallestStretchOfAReflection)
+{
+  const Matrix3d a = Vector3d(3.0, 2.0, -0.5).asDiagonal();
+  EXPECT_LT((ProjectOnRotations(a) - Matrix3d::Identity()).norm(), 1e-15);
+  const Matrix3d b = Vector3d(-0.5, 3.0, 2.0).asDiagonal();
+  EXPECT_LT((ProjectOnRotations(b) - Matrix3d::Identity()).norm(), 1e-15);
+  ExpectClosestRotation(-Matrix3d::Identity());
+}
+
+TEST(ClosestRotation, OfRankTwoIsDeterminedAndOfRankOneStillARotation)
+{
+  shapes::Random random(5);
+  for (int trial = 0; trial < 200; ++trial)
+  {
+    const Matrix3d r = RandomRotation(random);
+    const Matrix3d rankTwo = r * Vector3d(2.0, 0.7, 0.0).asDiagonal();
+    EXPECT_LT((ProjectOnRotations(rankTwo) - r).norm(), 1e-13);
+    const Matrix3d rankOne = r * Vector3d(2.0, 0.0, 0.0).asDiagonal();
+    EXPECT_LT((ProjectOnRotations(rankOne).col(0) - r.col(0)).norm(), 1e-13);
+    ExpectClosestRotation(rankOne);
+  }
+  EXPECT_EQ(ProjectOnRotations(Matrix3d::Zero()), Matrix3d::Identity());
+}
+
+TEST(ClosestRotation, DoesNotDependOnTheUnit)
+{
+  shapes::Random random(6);
+  for (int trial = 0; trial < 200; ++trial)
+  {
+    const Matrix3d a = RandomMatrix(random);
+    if (std::abs(a.determinant()) < 0.02) // nearly ambiguous ones lose digits
+    {
+      continue;
+    }
+    for (const double unit : { 1e-100, 1e-18, 1e-9, 1e6, 1e100 })
+    {
+      EXPECT_LT((ProjectOnRotations(unit * a) - ProjectOnRotations(a)).norm(), 1e-12) << unit;
+    }
+  }
+}
+
+TEST(ClosestRotation, OfABlendOfRotationsAboutOneAxisTurnsByTheBlendsAngle)
+{
+  for (const double angle : { 0.1, 1.0, 2.0, 3.0, 3.1415 })
+  {
+    const Matrix3d blend =
+      0.5 * (Matrix3d::Identity() + RotationFromVector(angle * Vector3d::UnitY()));
+    const Matrix3d half = RotationFromVector(0.5 * angle * Vector3d::UnitY());
+    EXPECT_LT((ProjectOnRotations(blend) - half).norm(), 1e-11) << angle;
+  }
+}
+
+//------------------------------------------------------------------------------
+TEST(RotationVector, AndBackForAllAngles)
+{
+  shapes::Random random(7);
+  for (const double angle : { 0.0, 1e-300, 1e-20, 1e-12, 1e-9, 1e-6, 1e-3, 0.5, 1.0, 2.0, 3.0,
+         Pi - 1e-3, Pi - 1e-6, Pi - 1e-9, Pi - 1e-12 })
+  {
+    for (int trial = 0; trial < 100; ++trial)
+    {
+      const Vector3d vector = angle * Vector3d{ random(), random(), random() }.normalized();
+      const Matrix3d rotation = RotationFromVector(vector);
+      EXPECT_LT((rotation.transpose() * rotation - Matrix3d::Identity()).norm(), 1e-14);
+      EXPECT_LT((VectorFromRotation(rotation) - vector).norm(), 2e-15) << angle;
+    }
+  }
+}
+
+TEST(RotationVector, OfHalfATurnIsOneOfTheTwoAxes)
+{
+  shapes::Random random(8);
+  for (int trial = 0; trial < 200; ++trial)
+  {
+    const Vector3d axis = Vector3d{ random(), random(), random() }.normalized();
+    const Vector3d vector = VectorFromRotation(RotationFromVector(Pi * axis));
+    EXPECT_NEAR(vector.norm(), Pi, 1e-14);
+    EXPECT_NEAR(std::abs(vector.dot(axis)), Pi, 1e-14);
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    Matrix3d exact = -Matrix3d::Identity();
+    exact(k, k) = 1.0;
+    const Vector3d vector = VectorFromRotation(exact);
+    EXPECT_NEAR(std::abs(vector[k]), Pi, 1e-15);
+    EXPECT_NEAR(vector.norm(), Pi, 1e-15);
+  }
+  EXPECT_EQ(VectorFromRotation(Matrix3d::Identity()), Vector3d::Zero());
+}
+
+TEST(RotationVector, TurnsByTheRightHandRule)
+{
+  const Matrix3d quarter = RotationFromVector(Vector3d(0, 0, Pi / 2));
+  EXPECT_LT((quarter * Vector3d::UnitX() - Vector3d::UnitY()).norm(), 1e-15);
+  // The axis stays, and the turn is by <axis> x.
+  const Vector3d axis = Vector3d(1, 2, -2) / 3.0;
+  const Matrix3d small = RotationFromVector(1e-8 * axis);
+  const Vector3d x(0.3, -1.0, 2.0);
+  EXPECT_LT((small * x - x - 1e-8 * axis.cross(x)).norm(), 1e-15);
+}
+
+TEST(RotationVector, MayExceedALap)
+{
+  const Vector3d axis = Vector3d(2, -1, 2) / 3.0;
+  for (const double angle : { 0.3, 2.0, -1.0 })
+  {
+    EXPECT_LT((RotationFromVector((angle + 6 * Pi) * axis) - RotationFromVector(angle * axis)).norm(),
+      1e-14);
+  }
+}
