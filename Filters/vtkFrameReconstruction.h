@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkFrameReconstruction
+ * @brief puts a surface together from its discrete forms
+ *
+ * Input 0 gives the connectivity: polygons, and with constraints the points
+ * they hold; its other coordinates are ignored. Input 1 is a forms table as
+ * vtkDiscreteForms makes it, with the columns `Vertex`, `Neighbor`, `Length`,
+ * `Angle`, `Height`, `Orientation`; the order of its rows does not matter. Two
+ * linear systems follow: the frames from the transitions that the forms define,
+ * then the positions from the frames.
+ *
+ * The output has the input's cells and attributes, points in double precision
+ * (whatever the input's, whose coordinates are ignored), and the arrays
+ * `FrameTangent1`, `FrameTangent2`, `FrameNormal` of the solution. Points in no
+ * triangle keep the input's place.
+ *
+ * The forms fix a surface up to a rigid motion of each connected component, so
+ * each needs a *seed*: a point with its position and frame. SeedPoint seeds its
+ * component; the first point of each other component is seeded with
+ * SeedPosition and SeedFrame too, with a warning, unless constraints hold it.
+ * Alternatively the points that ConstraintArrayName selects are held where
+ * input 0 has them, with the frames that its three frame arrays give.
+ *
+ * Forms of a real surface give it back exactly. Forms that were changed by hand
+ * or blended need not fit together; the result then fits them best in the
+ * least-squares sense.
+ *
+ * Errors, each with an empty output: see vtkDiscreteForms for the connectivity;
+ * a table with missing columns, missing, doubled or foreign edges, negative
+ * lengths or numbers that are not finite; a seed that is no point of a
+ * triangle, or whose frame is no right-handed orthonormal one; missing frame
+ * arrays.
+ *
+ * Reference: Lipman, Sorkine, Levin, Cohen-Or, Linear Rotation-invariant
+ * Coordinates for Meshes, ACM Transactions on Graphics 24(3), 2005, section 3.
+ *
+ * @sa vtkDiscreteForms
+ */
+#ifndef vtkFrameReconstruction_h
+#define vtkFrameReconstruction_h
+
+#include "CartanModule.h" // For the export macro
+
+#include "vtkPolyDataAlgorithm.h"
+
+#include <string> // For array names
+
+class vtkTable;
+
+class CARTAN_EXPORT vtkFrameReconstruction : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkFrameReconstruction* New();
+  vtkTypeMacro(vtkFrameReconstruction, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  vtkFrameReconstruction(const vtkFrameReconstruction&) = delete;
+  void operator=(const vtkFrameReconstruction&) = delete;
+
+  ///@{
+  /**
+   * The forms table, input port 1.
+   */
+  void SetFormsConnection(vtkAlgorithmOutput* table);
+  void SetFormsData(vtkTable* table);
+  ///@}
+
+  ///@{
+  /**
+   * The seed's point id; -1 (the default) is the first point of the first
+   * component. Not used with constraints.
+   */
+  vtkSetClampMacro(SeedPoint, vtkIdType, -1, VTK_ID_MAX);
+  vtkGetMacro(SeedPoint, vtkIdType);
+  ///@}
+
+  ///@{
+  /**
+   * Where the seed is, in length units. Default: the origin.
+   */
+  vtkSetVector3Macro(SeedPosition, double);
+  vtkGetVector3Macro(SeedPosition, double);
+  ///@}
+
+  ///@{
+  /**
+   * The seed's frame: its three vectors tangent 1, tangent 2, normal one after
+   * the other, orthonormal and right-handed to 1e-6. Tangent 1 is the direction
+   * of the first edge of the point's one-ring. Default: the coordinate axes.
+   */
+  void SetSeedFrame(const double frame[9]);
+  void SetSeedFrame(double t1x, double t1y, double t1z, double t2x, double t2y, double t2z,
+    double nx, double ny, double nz);
+  vtkGetVectorMacro(SeedFrame, double, 9);
+  ///@}
+
+  ///@{
+  /**
+   * A point array of input 0; points where it is not 0 are held with their
+   * positions and frames (`FrameTangent1`, `FrameTangent2`, `FrameNormal`, point
+   * arrays of input 0). Each component without such a point is seeded. Empty
+   * (the default): seeds only.
+   */
+  void SetConstraintArrayName(const std::string& name);
+  std::string GetConstraintArrayName() const { return this->ConstraintArrayName; }
+  ///@}
+
+  enum TransitionMethodType
+  {
+    PROCRUSTES = 0,
+    ORIENTATION_BITS = 1
+  };
+
+  ///@{
+  /**
+   * How the change of frame along an edge is read off the forms. PROCRUSTES:
+   * the rotation that fits the two one-rings best. ORIENTATION_BITS: the
+   * paper's Theorem 3.1, more sensitive to noise. Both agree on the forms of a
+   * surface. Default: PROCRUSTES.
+   */
+  vtkSetClampMacro(TransitionMethod, int, PROCRUSTES, ORIENTATION_BITS);
+  vtkGetMacro(TransitionMethod, int);
+  void SetTransitionMethodToProcrustes() { this->SetTransitionMethod(PROCRUSTES); }
+  void SetTransitionMethodToOrientationBits() { this->SetTransitionMethod(ORIENTATION_BITS); }
+  ///@}
+
+  ///@{
+  /**
+   * Whether frames are projected on rotations before the positions are solved
+   * for. Changes nothing for the forms of a surface; for others, raw
+   * least-squares frames shrink away from the seed. Default: on.
+   */
+  vtkSetMacro(ProjectFrames, bool);
+  vtkGetMacro(ProjectFrames, bool);
+  vtkBooleanMacro(ProjectFrames, bool);
+  ///@}
+
+protected:
+  vtkFrameReconstruction();
+  ~vtkFrameReconstruction() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+private:
+  vtkIdType SeedPoint = -1;
+  double SeedPosition[3] = { 0.0, 0.0, 0.0 };
+  double SeedFrame[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
+  std::string ConstraintArrayName;
+  int TransitionMethod = PROCRUSTES;
+  bool ProjectFrames = true;
+};
+
+#endif
