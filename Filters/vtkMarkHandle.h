@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkMarkHandle
+ * @brief marks the points of a region as a handle
+ *
+ * A *handle* is a set of points that the user holds while a deformation filter
+ * moves the rest. This filter writes which points belong to it.
+ *
+ * Input port 0: a vtkPolyData with points of any kind; a composite data set of
+ * such is marked in all its blocks at once. Growing needs triangles or polygons
+ * that form an oriented manifold. Input port 1, optional: a vtkSelection of
+ * points or cells.
+ *
+ * Output: the input with the point array `Handle` (int, one component, no unit;
+ * the name is settable): 0 for free points, k >= 1 for the points of handle k.
+ * If the input has that array, it is copied and extended, so chained filters
+ * mark several handles. The input itself is not touched.
+ *
+ * The region is given by an implicit function (points with a value <= 0 are
+ * in: the inside of a box, sphere or cylinder, the back side of a plane), by the
+ * selection (points of selected cells count as selected), or both, and can be
+ * grown over the surface by rings of edges or by geodesic distance. Points in
+ * no triangle can be marked, but nothing grows from or to them.
+ *
+ * A region without points is no error, because widgets pass through such
+ * states: the filter warns and passes the array on.
+ *
+ * @warning A selection is evaluated as vtkExtractSelection does it; a query as
+ * ParaView's Find Data makes it needs another extractor, see
+ * SetSelectionExtractor(). Nodes of a selection that name a block
+ * (COMPOSITE_INDEX, HIERARCHICAL_INDEX) select in that block only.
+ *
+ * @sa vtkHandleMotion vtkSurfaceDeformation vtkExtractSelection
+ */
+#ifndef vtkMarkHandle_h
+#define vtkMarkHandle_h
+
+#include "CartanModule.h" // For the export macro
+
+#include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h" // For the held objects
+
+#include <string> // For the array's name
+
+class vtkExtractSelection;
+class vtkImplicitFunction;
+class vtkSelection;
+
+class CARTAN_EXPORT vtkMarkHandle : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkMarkHandle* New();
+  vtkTypeMacro(vtkMarkHandle, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  vtkMarkHandle(const vtkMarkHandle&) = delete;
+  void operator=(const vtkMarkHandle&) = delete;
+
+  ///@{
+  /**
+   * The selection on port 1, optional.
+   */
+  void SetSelectionConnection(vtkAlgorithmOutput* output);
+  void SetSelectionData(vtkSelection* selection);
+  ///@}
+
+  ///@{
+  /**
+   * The id that the region's points get, >= 0. With 0 the points become free
+   * again. Default: 1.
+   */
+  vtkSetClampMacro(HandleId, int, 0, VTK_INT_MAX);
+  vtkGetMacro(HandleId, int);
+  ///@}
+
+  ///@{
+  /**
+   * The name of the point array. Default: "Handle".
+   */
+  vtkSetStdStringFromCharMacro(HandleArrayName);
+  vtkGetCharFromStdStringMacro(HandleArrayName);
+  ///@}
+
+  enum RegionSourceType
+  {
+    FUNCTION_OR_SELECTION = 0,
+    FUNCTION = 1,
+    SELECTION = 2,
+    ALL_POINTS = 3
+  };
+
+  ///@{
+  /**
+   * What makes the region. FUNCTION_OR_SELECTION, the default: the points in
+   * either, where one that is not given has none. FUNCTION and SELECTION use
+   * one and ignore the other. ALL_POINTS needs neither; with HandleId 0 it
+   * clears all marks.
+   */
+  vtkSetClampMacro(RegionSource, int, FUNCTION_OR_SELECTION, ALL_POINTS);
+  vtkGetMacro(RegionSource, int);
+  void SetRegionSourceToFunctionOrSelection() { this->SetRegionSource(FUNCTION_OR_SELECTION); }
+  void SetRegionSourceToFunction() { this->SetRegionSource(FUNCTION); }
+  void SetRegionSourceToSelection() { this->SetRegionSource(SELECTION); }
+  void SetRegionSourceToAllPoints() { this->SetRegionSource(ALL_POINTS); }
+  const char* GetRegionSourceAsString();
+  ///@}
+
+  ///@{
+  /**
+   * The function whose values <= 0 make the region, in the surface's
+   * coordinates. Default: none.
+   */
+  void SetRegion(vtkImplicitFunction* region);
+  vtkImplicitFunction* GetRegion();
+  ///@}
+
+  ///@{
+  /**
+   * Takes the points with a value > 0 of the function instead. Does not concern
+   * the selection, whose nodes have an inverse of their own. Default: off.
+   */
+  vtkSetMacro(InsideOut, bool);
+  vtkGetMacro(InsideOut, bool);
+  vtkBooleanMacro(InsideOut, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Adds the points within so many edges of the region, >= 0. Default: 0.
+   */
+  vtkSetClampMacro(GrowRings, int, 0, VTK_INT_MAX);
+  vtkGetMacro(GrowRings, int);
+  ///@}
+
+  ///@{
+  /**
+   * Adds the points within this distance of the region along the surface, in
+   * length units, >= 0. Together with GrowRings, points that either reaches are
+   * added. Default: 0.
+   */
+  vtkSetClampMacro(GrowDistance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(GrowDistance, double);
+  ///@}
+
+  ///@{
+  /**
+   * On: points of other handles in the region change to HandleId. Off: only
+   * free points are marked. Default: on.
+   */
+  vtkSetMacro(Overwrite, bool);
+  vtkGetMacro(Overwrite, bool);
+  vtkBooleanMacro(Overwrite, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The kind of extractor that evaluates the selection; each execution makes a
+   * new instance of its class. ParaView's vtkPVExtractSelection also knows
+   * queries. None, the default: vtkExtractSelection.
+   */
+  void SetSelectionExtractor(vtkExtractSelection* extractor);
+  vtkExtractSelection* GetSelectionExtractor();
+  ///@}
+
+  /**
+   * How many points of the region have HandleId after the last execution; with
+   * HandleId 0, how many are free.
+   */
+  vtkGetMacro(NumberOfMarkedPoints, vtkIdType);
+
+  /**
+   * Includes the region's function with its transform.
+   */
+  vtkMTimeType GetMTime() override;
+
+  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+protected:
+  vtkMarkHandle();
+  ~vtkMarkHandle() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+  /// Why no point is marked, in a sentence.
+  std::string DescribeEmptyRegion(bool hasSelection);
+
+  int HandleId = 1;
+  std::string HandleArrayName = "Handle";
+  int RegionSource = FUNCTION_OR_SELECTION;
+  bool InsideOut = false;
+  int GrowRings = 0;
+  double GrowDistance = 0.0;
+  bool Overwrite = true;
+  vtkSmartPointer<vtkImplicitFunction> Region;
+  vtkSmartPointer<vtkExtractSelection> SelectionExtractor;
+  vtkIdType NumberOfMarkedPoints = 0;
+};
+
+#endif
