@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FrameDeformer.h"
+
+#include "Curvature.h"
+#include "Geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cartan
+{
+FrameDeformer::FrameDeformer(
+  HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
+  : Problem(std::move(problem))
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const auto symmetricWeights = [&](LaplacianWeights weights)
+  {
+    return std::make_shared<const Eigen::VectorXd>(SymmetricPart(
+      mesh, cartan::EdgeWeights(mesh, *this->Problem.Rest, weights, context)));
+  };
+  using Hold = HandleLaplacian::Hold;
+  const bool sameWeights = this->Problem.PositionWeights == this->Problem.Weights;
+  const bool isShared = this->Problem.ConstrainPositions && sameWeights;
+  const auto frameWeights = symmetricWeights(this->Problem.Weights);
+  context.Report(0.1);
+  this->Frames = std::make_shared<HandleLaplacian>(this->Problem, frameWeights, Hold::AllHandles,
+    backend, context.Part(0.1, isShared ? 1.0 : 0.5));
+  this->EdgeWeights =
+    sameWeights ? frameWeights : symmetricWeights(this->Problem.PositionWeights);
+  this->Positions = isShared
+    ? this->Frames
+    : std::make_shared<HandleLaplacian>(this->Problem, this->EdgeWeights,
+        this->Problem.ConstrainPositions ? Hold::AllHandles : Hold::PinnedOnly, backend,
+        context.Part(0.5, 1.0));
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    const auto& moving = this->Problem.Moving;
+    const auto found = std::lower_bound(moving.begin(), moving.end(), this->Problem.Handle[v]);
+    if (found != moving.end() && *found == this->Problem.Handle[v] && mesh.IsUsed(v))
+    {
+      this->HandleVertices.push_back({ v, static_cast<int>(found - moving.begin()) });
+    }
+  }
+}
+
+int FrameDeformer::GetNumberOfFactorizations() const
+{
+  return this->Frames->GetNumberOfFactorizations() +
+    (this->Positions == this->Frames ? 0 : this->Positions->GetNumberOfFactorizations());
+}
+
+Eigen::Vector3d FrameDeformer::Target(const HandleTargets& targets, int vertex, int handle) const
+{
+  const Eigen::Vector3d rest = this->Problem.Rest->row(vertex);
+  if (handle < 0)
+  {
+    return rest;
+  }
+  if (targets.Positions.rows())
+  {
+    return targets.Positions.row(vertex);
+  }
+  return targets.Motions[handle].Linear * rest + targets.Motions[handle].Translation;
+}
+
+void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
+  DeformedSurface& result, const ExecutionContext& context)
+{
+  this->Warning.clear();
+  result.Positions = *this->Problem.Rest;
+  // Softly held and unheld vertices among these are overwritten by the solve.
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    result.Positions.row(held.Vertex) =
+      this->Target(targets, held.Vertex, held.Handle).transpose();
+  }
+  const bool isDirect = !this->PreservesVolume() &&
+    this->DeformDirectly(targets, result.Positions, context);
+  if (!isDirect || wantTransforms)
+  {
+    if (this->Transforms.rows() == 0)
+    {
+      this->Transforms.resize(this->Problem.Mesh->NumberOfVertices(), 9);
+      this->Transforms.rowwise() =
+        Eigen::Map<const Eigen::Matrix<double, 1, 9>>(Eigen::Matrix3d::Identity().eval().data());
+    }
+    this->ComputeTransforms(targets, context);
+    context.Report(0.4);
+  }
+  if (!isDirect)
+  {
+    this->SolvePositions(targets, this->Transforms, result.Positions, context);
+    context.Report(0.7);
+  }
+  // Not those of an earlier motion with another correction.
+  result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());
+  if (this->PreservesVolume())
+  {
+    if (this->Correction == VolumeCorrection::FrameScaling)
+    {
+      this->ScaleFrames(targets, result, context);
+    }
+    if (this->Close)
+    {
+      this->CloseVolumes(result.Positions);
+    }
+  }
+  if (wantTransforms)
+  {
+    result.Transforms = this->Transforms;
+  }
+  context.Report(1.0);
+}
+
+void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices& transforms,
+  Points& positions, const ExecutionContext& context) const
+{
+  const HandleLaplacian& system = *this->Positions;
+  const Points& rest = *this->Problem.Rest;
+  // Neutral offset: the target of an edge, R_mean (p_j - p_i), is what its two
+  // ends make of it when each carries the middle of the body under it rigidly,
+  //   (R_i + R_j)/2 (p_j - p_i) + (R_j - R_i) (o_i + o_j)/2,
+  // with o from the middle to the skin: the skin stretches outside of a bend
+  // and shrinks inside, and the middle keeps its length.
+  const Points* offsets = this->PreservesVolume() &&
+      this->Correction == VolumeCorrection::NeutralOffset
+    ? &this->Model->Offsets
+    : nullptr;
+  Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
+  context.For(system.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        const int v = system.Vertex(i);
+        const Eigen::Vector3d point = rest.row(v);
+        const auto transform = MatrixAt(transforms, v);
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (const auto* edge = system.EdgesBegin(i); edge != system.EdgesEnd(i); ++edge)
+        {
+          const int w = system.Vertex(edge->Neighbor);
+          const auto other = MatrixAt(transforms, w);
+          const double half = 0.5 * edge->Weight;
+          sum += half * ((transform + other) * (point - rest.row(w).transpose()));
+          if (offsets)
+          {
+            sum += half *
+              ((transform - other) * (offsets->row(v) + offsets->row(w)).transpose());
+          }
+          if (edge->Neighbor >= system.NumberOfUnknowns())
+          {
+            sum += edge->Weight * positions.row(w).transpose();
+          }
+        }
+        if (system.SquaredSoftWeight(i) > 0.0)
+        {
+          sum += 0.5 * system.SquaredSoftWeight(i) *
+            this->Target(targets, v, system.MovingHandle(i));
+        }
+        rightHandSide.row(i) = sum;
+      }
+    });
+  const Eigen::MatrixXd solution = system.Solve(rightHandSide);
+  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+  {
+    positions.row(system.Vertex(i)) = solution.row(i);
+  }
+}
+
+void FrameDeformer::ScaleFrames(
+  const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context)
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const Curvatures curvatures = CurvaturesFromNormals(
+    mesh, result.Positions, VertexNormals(mesh, result.Positions, context), context);
+  Matrices scaled = this->Transforms;
+  for (int i = 0; i < this->Positions->NumberOfLocals(); ++i)
+  {
+    const int v = this->Positions->Vertex(i);
+    if (!this->Model->EnclosesVolume[mesh.Component(v)] || !this->Model->IsMeasured[v])
+    {
+      continue;
+    }
+    // The depth of the surface at rest serves the deformed one too.
+    const double k1 = curvatures.Maximum[v];
+    const double k2 = curvatures.Minimum[v];
+    const double height =
+      ColumnHeight(ColumnDepth(this->Model->LocalDepth[v], k1, k2), k1, k2);
+    const double ratio = this->Model->ColumnHeight[v] / height;
+    if (std::isfinite(ratio) && ratio > 0.0)
+    {
+      result.FrameScale[v] = std::sqrt(ratio);
+      scaled.row(v) *= result.FrameScale[v];
+    }
+  }
+  this->SolvePositions(targets, scaled, result.Positions, context);
+}
+
+void FrameDeformer::CloseVolumes(Points& positions)
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const HandleLaplacian& system = *this->Positions;
+  // The Lagrange step: among all changes of one volume by the same amount,
+  // A^-1 grad V costs the position energy least.
+  const Points gradient = VolumeGradient(mesh, positions);
+  Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
+  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+  {
+    rightHandSide.row(i) = gradient.row(system.Vertex(i));
+  }
+  const Eigen::MatrixXd solution = system.Solve(rightHandSide);
+  Points direction = Points::Zero(positions.rows(), 3);
+  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+  {
+    direction.row(system.Vertex(i)) = solution.row(i);
+  }
+  const std::vector<double> steps = VolumeClosingSteps(
+    mesh, positions, direction, this->Model->EnclosesVolume, this->Model->Volumes);
+  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+  {
+    const int v = system.Vertex(i);
+    positions.row(v) += steps[mesh.Component(v)] * direction.row(v);
+  }
+}
+}

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "HandleLaplacian.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cartan
+{
+namespace
+{
+/// The soft weight of a held vertex; infinity without soft weights.
+double HoldWeight(const HandleProblem& problem, int vertex)
+{
+  return problem.SoftWeights.size() ? problem.SoftWeights[vertex]
+                                    : std::numeric_limits<double>::infinity();
+}
+
+/// Index of each vertex's handle in Moving, -1 for the others.
+std::vector<int> MovingHandleOfVertices(const HandleProblem& problem)
+{
+  std::vector<int> moving(problem.Handle.size(), -1);
+  for (std::size_t v = 0; v < moving.size(); ++v)
+  {
+    const auto found =
+      std::lower_bound(problem.Moving.begin(), problem.Moving.end(), problem.Handle[v]);
+    if (problem.Handle[v] > 0 && found != problem.Moving.end() && *found == problem.Handle[v])
+    {
+      moving[v] = static_cast<int>(found - problem.Moving.begin());
+    }
+  }
+  return moving;
+}
+
+/// Marks the unknown vertices that a moving handle reaches through unknown ones.
+std::vector<char> ReachedUnknowns(const TriangleMesh& mesh, const std::vector<char>& isHeld,
+  const std::vector<int>& moving)
+{
+  const int numberOfVertices = mesh.NumberOfVertices();
+  std::vector<char> isReached(numberOfVertices, 0);
+  std::vector<int> stack;
+  const auto reach = [&](int v)
+  {
+    if (!isHeld[v] && !isReached[v])
+    {
+      isReached[v] = 1;
+      stack.push_back(v);
+    }
+  };
+  for (int v = 0; v < numberOfVertices; ++v)
+  {
+    if (moving[v] < 0 || !mesh.IsUsed(v))
+    {
+      continue;
+    }
+    reach(v);
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      reach(mesh.Neighbor(d));
+    }
+  }
+  while (!stack.empty())
+  {
+    const int v = stack.back();
+    stack.pop_back();
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      reach(mesh.Neighbor(d));
+    }
+  }
+  return isReached;
+}
+}
+
+HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
+  std::shared_ptr<const Eigen::VectorXd> edgeWeights, Hold hold, SolverBackend backend,
+  const ExecutionContext& context)
+  : MovingCount(static_cast<int>(problem.Moving.size()))
+  , Solver(backend)
+{
+  const TriangleMesh& mesh = *problem.Mesh;
+  const int numberOfVertices = mesh.NumberOfVertices();
+  const std::vector<int> moving = MovingHandleOfVertices(problem);
+
+  std::vector<char> isHeld(numberOfVertices, 0);
+  for (int v = 0; v < numberOfVertices; ++v)
+  {
+    isHeld[v] = problem.Handle[v] > 0 && std::isinf(HoldWeight(problem, v)) &&
+      (hold == Hold::AllHandles || moving[v] < 0);
+  }
+  const std::vector<char> isUnknown = ReachedUnknowns(mesh, isHeld, moving);
+
+  std::vector<int> local(numberOfVertices, -1);
+  const auto number = [&](int v)
+  {
+    if (local[v] < 0)
+    {
+      local[v] = this->NumberOfLocals();
+      this->Vertices.push_back(v);
+      this->MovingHandles.push_back(moving[v]);
+      const bool isSoft = isUnknown[v] && problem.Handle[v] > 0 &&
+        std::isfinite(HoldWeight(problem, v));
+      this->SquaredSoftWeights.push_back(
+        isSoft ? HoldWeight(problem, v) * HoldWeight(problem, v) : 0.0);
+    }
+    return local[v];
+  };
+  for (int v = 0; v < numberOfVertices; ++v)
+  {
+    if (isUnknown[v])
+    {
+      number(v);
+    }
+  }
+  this->UnknownCount = this->NumberOfLocals();
+  this->EdgeOffsets.reserve(this->UnknownCount + 1);
+  this->EdgeOffsets.push_back(0);
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    const int v = this->Vertices[i];
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      this->Edges.push_back({ number(mesh.Neighbor(d)), (*edgeWeights)[d] });
+    }
+    this->EdgeOffsets.push_back(static_cast<int>(this->Edges.size()));
+  }
+  context.Report(0.1);
+
+  // The system over all locals, with the held ones fixed.
+  SparseMatrix matrix(this->NumberOfLocals(), this->NumberOfLocals());
+  matrix.reserve(this->Edges.size() + this->NumberOfLocals());
+  std::vector<std::vector<std::pair<int, double>>> heldColumns(
+    this->NumberOfLocals() - this->UnknownCount);
+  std::vector<std::pair<int, double>> column;
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    column.clear();
+    double sum = 0.0;
+    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
+    {
+      column.emplace_back(edge->Neighbor, -edge->Weight);
+      sum += edge->Weight;
+      if (edge->Neighbor >= this->UnknownCount)
+      {
+        heldColumns[edge->Neighbor - this->UnknownCount].emplace_back(i, -edge->Weight);
+      }
+    }
+    column.emplace_back(i, sum);
+    std::sort(column.begin(), column.end());
+    matrix.startVec(i);
+    for (const auto& [row, value] : column)
+    {
+      matrix.insertBack(row, i) = value;
+    }
+  }
+  for (std::size_t held = 0; held < heldColumns.size(); ++held)
+  {
+    const int c = this->UnknownCount + static_cast<int>(held);
+    matrix.startVec(c);
+    for (const auto& [row, value] : heldColumns[held])
+    {
+      matrix.insertBack(row, c) = value;
+    }
+  }
+  matrix.finalize();
+
+  std::vector<char> isFixed(this->NumberOfLocals(), 0);
+  std::fill(isFixed.begin() + this->UnknownCount, isFixed.end(), 1);
+  Eigen::VectorXd stiffness = 0.5 *
+    Eigen::Map<const Eigen::VectorXd>(
+      this->SquaredSoftWeights.data(), static_cast<Eigen::Index>(this->SquaredSoftWeights.size()));
+  this->Solver.Factorize(matrix, isFixed, stiffness, this->Vertices, context.Part(0.1, 1.0));
+}
+
+Field HandleLaplacian::HarmonicFields() const
+{
+  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(this->UnknownCount, this->MovingCount);
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
+    {
+      const int handle = this->MovingHandles[edge->Neighbor];
+      if (edge->Neighbor >= this->UnknownCount && handle >= 0)
+      {
+        rightHandSide(i, handle) += edge->Weight;
+      }
+    }
+    if (this->MovingHandles[i] >= 0)
+    {
+      rightHandSide(i, this->MovingHandles[i]) += 0.5 * this->SquaredSoftWeights[i];
+    }
+  }
+  Field fields = Field::Zero(this->NumberOfLocals(), this->MovingCount);
+  fields.topRows(this->UnknownCount) = this->Solve(rightHandSide);
+  for (int i = this->UnknownCount; i < this->NumberOfLocals(); ++i)
+  {
+    if (this->MovingHandles[i] >= 0)
+    {
+      fields(i, this->MovingHandles[i]) = 1.0;
+    }
+  }
+  return fields;
+}
+}

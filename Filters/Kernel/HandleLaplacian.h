@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ConstrainedSolver.h"
+#include "HandleProblem.h"
+
+#include <vector>
+
+namespace cartan
+{
+/// The Laplacian system on the free vertices that moving handles can reach, the
+/// held ones eliminated. It is factorized once and serves everything that is
+/// harmonic or nearly so: frames, angles and positions.
+///
+/// Its *local* numbering has the unknown vertices first, then the held vertices
+/// next to them. Free vertices that no moving handle reaches through free
+/// vertices are not in it and cost nothing.
+class HandleLaplacian
+{
+public:
+  enum class Hold
+  {
+    AllHandles, ///< every handle is held
+    PinnedOnly  ///< moving handles are unknown, only pinned ones are held
+  };
+
+  /// `edgeWeights` (#D) must be symmetric. Throws Error(SingularSystem) when an
+  /// unknown vertex reaches no held one.
+  HandleLaplacian(const HandleProblem& problem, std::shared_ptr<const Eigen::VectorXd> edgeWeights,
+    Hold hold, SolverBackend backend, const ExecutionContext& context);
+
+  int NumberOfUnknowns() const { return this->UnknownCount; }
+  int NumberOfLocals() const { return static_cast<int>(this->Vertices.size()); }
+
+  /// The mesh's vertex of a local one, and the index of its handle in
+  /// HandleProblem::Moving; -1 for pinned and free vertices.
+  int Vertex(int local) const { return this->Vertices[local]; }
+  int MovingHandle(int local) const { return this->MovingHandles[local]; }
+
+  /// w^2 of a softly held unknown, 0 elsewhere. Its half is the stiffness in L,
+  /// because L stands for both directions of each edge.
+  double SquaredSoftWeight(int local) const { return this->SquaredSoftWeights[local]; }
+
+  /// The part of the one-ring of an unknown local vertex: its edges to local
+  /// vertices, which are all.
+  struct Edge
+  {
+    int Neighbor; ///< local
+    double Weight;
+  };
+  const Edge* EdgesBegin(int unknown) const { return this->Edges.data() + this->EdgeOffsets[unknown]; }
+  const Edge* EdgesEnd(int unknown) const
+  {
+    return this->Edges.data() + this->EdgeOffsets[unknown + 1];
+  }
+
+  /// The functions that are 1 on one handle of HandleProblem::Moving and 0 on
+  /// all others and the pinned ones, harmonic elsewhere: #locals x #Moving.
+  Field HarmonicFields() const;
+
+  /// Solves L x = b: `rightHandSide` has a row per unknown and already contains
+  /// what held neighbours and soft targets add. Returns #unknowns x k.
+  Eigen::MatrixXd Solve(const Eigen::MatrixXd& rightHandSide) const
+  {
+    return this->Solver.SolveFree(rightHandSide);
+  }
+
+  int GetNumberOfFactorizations() const { return this->Solver.GetNumberOfFactorizations(); }
+
+private:
+  std::vector<int> Vertices;
+  std::vector<int> MovingHandles;
+  std::vector<double> SquaredSoftWeights;
+  int UnknownCount = 0;
+  int MovingCount = 0;
+  std::vector<int> EdgeOffsets;
+  std::vector<Edge> Edges;
+  ConstrainedSolver Solver;
+};
+}
