@@ -4,9 +4,10 @@
 # development packages of everything it depends on.
 set(paraview_components RemotingCore pqApplicationComponents)
 set(vtk_components
-  CommonCore CommonDataModel CommonExecutionModel CommonMath CommonTransforms
-  FiltersCore FiltersExtraction FiltersGeneral FiltersSources IOXML
-  ParallelCore TestingCore WrappingPythonCore)
+  CommonCore CommonDataModel CommonExecutionModel CommonMath CommonSystem
+  FiltersCore FiltersExtraction ParallelCore
+  CommonTransforms FiltersSources IOXML TestingCore # the tests
+  WrappingPythonCore)
 
 if (NOT DEFINED CARTAN_BUILD_PLUGIN)
   find_package(ParaView 5.11 QUIET COMPONENTS ${paraview_components})
