@@ -12,6 +12,7 @@
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkMultiProcessController.h"
@@ -22,6 +23,7 @@
 #include "vtkSMPTools.h"
 #include "vtkTriangleFilter.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -64,7 +66,69 @@ void AppendTriangles(vtkCellArray* polygons, const std::function<long long(vtkId
   }
 }
 
-CellTriangles Triangulate(vtkPolyData* input)
+/// A polygon with such a point may fall apart when it is triangulated, and then
+/// nobody would miss it.
+void RequireFinitePoints(vtkPolyData* input, const std::string& role)
+{
+  std::vector<char> isSeen(input->GetNumberOfPoints(), 0);
+  IdSample notFinite;
+  for (vtkCellArray* cells : { input->GetPolys(), input->GetStrips() })
+  {
+    auto iterator = vtk::TakeSmartPointer(cells->NewIterator());
+    for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
+    {
+      vtkIdType size = 0;
+      const vtkIdType* ids = nullptr;
+      iterator->GetCurrentCell(size, ids);
+      for (vtkIdType i = 0; i < size; ++i)
+      {
+        isSeen[ids[i]] = 1;
+      }
+    }
+  }
+  for (std::size_t v = 0; v < isSeen.size(); ++v)
+  {
+    double point[3];
+    input->GetPoint(static_cast<vtkIdType>(v), point);
+    if (isSeen[v] && !Eigen::Map<const Eigen::Vector3d>(point).allFinite())
+    {
+      notFinite.Add(static_cast<long long>(v));
+    }
+  }
+  if (!notFinite.IsEmpty())
+  {
+    MeshReport report;
+    report.NonFinite = notFinite;
+    throw Error(ErrorCode::BadInput, "The " + role + " has " + report.DescribeErrors());
+  }
+}
+
+/// Polygons of which vtkTriangleFilter made fewer triangles than they have: those
+/// without area, in whole or in part, vanish in it, and the surface would fall
+/// apart there. As fans they are degenerate triangles like any others.
+std::vector<char> BrokenPolygons(
+  vtkCellArray* polygons, vtkPolyData* triangulated, vtkIdTypeArray* cellIds, vtkIdType firstCell)
+{
+  std::vector<vtkIdType> missing(polygons->GetNumberOfCells());
+  for (std::size_t polygon = 0; polygon < missing.size(); ++polygon)
+  {
+    missing[polygon] = polygons->GetCellSize(static_cast<vtkIdType>(polygon)) - 2;
+  }
+  for (vtkIdType triangle = 0; triangle < triangulated->GetNumberOfPolys(); ++triangle)
+  {
+    const auto polygon = static_cast<std::size_t>(cellIds->GetValue(triangle) - firstCell);
+    if (polygon < missing.size())
+    {
+      --missing[polygon];
+    }
+  }
+  std::vector<char> isBroken(missing.size());
+  std::transform(missing.begin(), missing.end(), isBroken.begin(),
+    [](vtkIdType count) -> char { return count > 0; });
+  return isBroken;
+}
+
+CellTriangles Triangulate(vtkPolyData* input, const std::string& role)
 {
   CellTriangles triangles;
   const vtkIdType firstPolygon = input->GetNumberOfVerts() + input->GetNumberOfLines();
@@ -76,6 +140,7 @@ CellTriangles Triangulate(vtkPolyData* input)
       input->GetPolys(), [firstPolygon](vtkIdType id) { return firstPolygon + id; }, triangles);
     return triangles;
   }
+  RequireFinitePoints(input, role);
   vtkNew<vtkPolyData> polygons;
   polygons->SetPoints(input->GetPoints());
   polygons->SetPolys(input->GetPolys());
@@ -95,8 +160,38 @@ CellTriangles Triangulate(vtkPolyData* input)
   triangulate->Update();
   vtkPolyData* result = triangulate->GetOutput();
   auto* from = vtkIdTypeArray::SafeDownCast(result->GetCellData()->GetArray("CellIds"));
+  const std::vector<char> isBroken = BrokenPolygons(input->GetPolys(), result, from, firstPolygon);
+  const auto isWhole = [&isBroken, firstPolygon](vtkIdType cell)
+  {
+    const auto polygon = static_cast<std::size_t>(cell - firstPolygon);
+    return polygon >= isBroken.size() || !isBroken[polygon];
+  };
+  vtkNew<vtkCellArray> whole;
+  std::vector<vtkIdType> cellOfWhole;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType triangle = 0; triangle < result->GetNumberOfPolys(); ++triangle)
+  {
+    if (isWhole(from->GetValue(triangle)))
+    {
+      result->GetPolys()->GetCellAtId(triangle, ids);
+      whole->InsertNextCell(ids);
+      cellOfWhole.push_back(from->GetValue(triangle));
+    }
+  }
+  for (std::size_t polygon = 0; polygon < isBroken.size(); ++polygon)
+  {
+    if (isBroken[polygon])
+    {
+      input->GetPolys()->GetCellAtId(static_cast<vtkIdType>(polygon), ids);
+      for (vtkIdType corner = 2; corner < ids->GetNumberOfIds(); ++corner)
+      {
+        whole->InsertNextCell({ ids->GetId(0), ids->GetId(corner - 1), ids->GetId(corner) });
+        cellOfWhole.push_back(firstPolygon + static_cast<vtkIdType>(polygon));
+      }
+    }
+  }
   AppendTriangles(
-    result->GetPolys(), [from](vtkIdType id) { return from->GetValue(id); }, triangles);
+    whole, [&cellOfWhole](vtkIdType id) { return cellOfWhole[id]; }, triangles);
   return triangles;
 }
 
@@ -216,7 +311,14 @@ Points CellNormals(const Surface& surface, const Points& positions, vtkIdType nu
   {
     normals.row(surface.CellIds[t]) += areaVectors.row(t);
   }
-  normals.rowwise().normalize();
+  for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
+  {
+    const double size = normals.row(cell).norm();
+    if (size > 0.0)
+    {
+      normals.row(cell) /= size;
+    }
+  }
   return normals;
 }
 
@@ -229,7 +331,8 @@ void WriteCoordinates(const Surface& surface, const Points& positions, Real* coo
     {
       for (int v = begin; v < end; ++v)
       {
-        if (surface.Mesh.IsUsed(v))
+        // To Origin and back would cost a point that did not move its last bit.
+        if (surface.Mesh.IsUsed(v) && positions.row(v) != surface.Positions.row(v))
         {
           for (int c = 0; c < 3; ++c)
           {
@@ -308,7 +411,7 @@ Surface ReadSurface(vtkPolyData* input, const std::string& role)
 {
   RequirePolygons(input, role);
   const int numberOfPoints = static_cast<int>(input->GetNumberOfPoints());
-  CellTriangles cells = Triangulate(input);
+  CellTriangles cells = Triangulate(input, role);
   if (cells.CellIds.empty())
   {
     throw Error(ErrorCode::BadInput,
@@ -407,6 +510,11 @@ Surface ReadConnectivity(vtkPolyData* input, const std::string& role)
   }
   AppendTriangles(
     input->GetPolys(), [firstPolygon](vtkIdType id) { return firstPolygon + id; }, cells);
+  if (cells.CellIds.empty())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The " + role + " has no triangles with three different points.");
+  }
 
   Surface surface;
   surface.CellIds = std::move(cells.CellIds);

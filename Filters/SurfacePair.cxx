@@ -85,8 +85,7 @@ SurfacePair ReadSurfacePair(vtkPolyData* current, vtkPolyData* reference)
   Surface referenceSurface = ReadSurface(reference, "reference");
   RequireSameCount("points", current->GetNumberOfPoints(), reference->GetNumberOfPoints());
   RequireSameCount("polygons", current->GetNumberOfPolys(), reference->GetNumberOfPolys());
-  RequireSameCount(
-    "triangle strips", current->GetNumberOfStrips(), reference->GetNumberOfStrips());
+  RequireSameCount("triangle strips", current->GetNumberOfStrips(), reference->GetNumberOfStrips());
   const vtkIdType firstPolygon = current->GetNumberOfVerts() + current->GetNumberOfLines();
   IdSample differences;
   CollectDifferences(current->GetPolys(), reference->GetPolys(), firstPolygon, differences);

@@ -12,6 +12,7 @@
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 
 #include <cmath>
@@ -28,8 +29,7 @@ void AddScalars(vtkPolyData* output, const std::string& name, const Eigen::Vecto
   cartan::AddPointArray(output, name, values.data(), values.size(), 1);
 }
 
-void AddCurvatures(
-  vtkPolyData* output, const cartan::Curvatures& curvatures, bool withDirections)
+void AddCurvatures(vtkPolyData* output, const cartan::Curvatures& curvatures, bool withDirections)
 {
   AddScalars(output, "MeanCurvature", curvatures.Mean);
   AddScalars(output, "GaussianCurvature", curvatures.Gaussian);
@@ -37,10 +37,10 @@ void AddCurvatures(
   AddScalars(output, "MinimumCurvature", curvatures.Minimum);
   if (withDirections)
   {
-    cartan::AddPointArray(output, "MaximumCurvatureDirection",
-      curvatures.MaximumDirections.data(), curvatures.MaximumDirections.rows(), 3);
-    cartan::AddPointArray(output, "MinimumCurvatureDirection",
-      curvatures.MinimumDirections.data(), curvatures.MinimumDirections.rows(), 3);
+    cartan::AddPointArray(output, "MaximumCurvatureDirection", curvatures.MaximumDirections.data(),
+      curvatures.MaximumDirections.rows(), 3);
+    cartan::AddPointArray(output, "MinimumCurvatureDirection", curvatures.MinimumDirections.data(),
+      curvatures.MinimumDirections.rows(), 3);
   }
 }
 
@@ -120,6 +120,7 @@ int vtkCurvatureError::RequestData(
           cartan::FitCurvatures(surface.Mesh, surface.Positions, context);
         output->ShallowCopy(input);
         AddCurvatures(output, curvatures, this->ComputeDirections);
+        output->GetPointData()->SetActiveScalars("MeanCurvature");
         return;
       }
 
@@ -129,8 +130,7 @@ int vtkCurvatureError::RequestData(
         cartan::FitCurvatures(pair.Mesh, pair.Reference, context.Part(0.0, 0.5));
       const cartan::Curvatures now =
         cartan::FitCurvatures(pair.Mesh, pair.Current, context.Part(0.5, 1.0));
-      const Eigen::VectorXd areas =
-        cartan::MixedVoronoiAreas(pair.Mesh, pair.Reference, context);
+      const Eigen::VectorXd areas = cartan::MixedVoronoiAreas(pair.Mesh, pair.Reference, context);
 
       output->ShallowCopy(input);
       AddCurvatures(output, now, this->ComputeDirections);
@@ -138,6 +138,7 @@ int vtkCurvatureError::RequestData(
         AddError(output, "MeanCurvature", now.Mean - before.Mean, areas);
       std::tie(this->GaussianCurvatureErrorRMS, this->GaussianCurvatureErrorMax) =
         AddError(output, "GaussianCurvature", now.Gaussian - before.Gaussian, areas);
+      output->GetPointData()->SetActiveScalars("MeanCurvatureError");
     });
 }
 

@@ -24,6 +24,8 @@
  *   arbitrary, and where k1 = k2 the directions are too.
  * - `MeanCurvatureError`, `GaussianCurvatureError` (with a reference): the
  *   surface's curvature minus the reference's.
+ * The active point scalars, by which viewers color the surface, are
+ * `MeanCurvatureError` with a reference and `MeanCurvature` without.
  *
  * Field data, one double each, with a reference: `MeanCurvatureErrorRMS`,
  * `MeanCurvatureErrorMax` (largest absolute value), `GaussianCurvatureErrorRMS`,

@@ -15,28 +15,51 @@
 #include <limits>
 #include <vector>
 
-/// The volume models of the surfaces that are still in use.
+/// What is kept of the surfaces that are still in use: their volume models, and
+/// their local volumes once asked for.
 class vtkFrameDeformation::VolumeModels
 {
 public:
   std::shared_ptr<const cartan::VolumeModel> Find(vtkFrameDeformation* filter,
     const cartan::HandleProblem& problem, const cartan::ExecutionContext& context)
   {
-    this->Entries.erase(std::remove_if(this->Entries.begin(), this->Entries.end(),
-                          [](const Entry& entry) { return entry.Surface.expired(); }),
-      this->Entries.end());
-    for (const Entry& entry : this->Entries)
+    Entry& entry = this->EntryOf(problem);
+    if (!entry.Model)
     {
-      if (entry.Surface.lock() == problem.Rest)
+      entry.Model = std::make_shared<const cartan::VolumeModel>(cartan::MeasureVolumeModel(
+        *problem.Mesh, *problem.Rest, cartan::MakeRayCaster(*problem.Mesh, *problem.Rest),
+        context));
+      cartan::Warn(filter, entry.Model->Warning);
+    }
+    return entry.Model;
+  }
+
+  /// The part of the volume under each vertex; NaN where none is enclosed.
+  Eigen::VectorXd MeasureLocalVolumes(const cartan::HandleProblem& problem,
+    const cartan::VolumeModel& model, const cartan::Points& positions,
+    const cartan::ExecutionContext& context)
+  {
+    Eigen::VectorXd volumes = Eigen::VectorXd::Constant(
+      positions.rows(), std::numeric_limits<double>::quiet_NaN());
+    if (!model.IsEmpty())
+    {
+      Entry& entry = this->EntryOf(problem);
+      if (!entry.Volumes)
       {
-        return entry.Model;
+        entry.Volumes =
+          std::make_shared<const cartan::LocalVolumes>(*problem.Mesh, *problem.Rest, context);
+      }
+      const Eigen::VectorXd measured = entry.Volumes->Measure(positions, context);
+      for (Eigen::Index v = 0; v < positions.rows(); ++v)
+      {
+        const int component = problem.Mesh->Component(static_cast<int>(v));
+        if (component < 0 || model.EnclosesVolume[component])
+        {
+          volumes[v] = measured[v];
+        }
       }
     }
-    auto model = std::make_shared<const cartan::VolumeModel>(cartan::MeasureVolumeModel(
-      *problem.Mesh, *problem.Rest, cartan::MakeRayCaster(*problem.Mesh, *problem.Rest), context));
-    cartan::Warn(filter, model->Warning);
-    this->Entries.push_back({ problem.Rest, model });
-    return model;
+    return volumes;
   }
 
 private:
@@ -44,7 +67,25 @@ private:
   {
     std::weak_ptr<const cartan::Points> Surface;
     std::shared_ptr<const cartan::VolumeModel> Model;
+    std::shared_ptr<const cartan::LocalVolumes> Volumes;
   };
+
+  Entry& EntryOf(const cartan::HandleProblem& problem)
+  {
+    this->Entries.erase(std::remove_if(this->Entries.begin(), this->Entries.end(),
+                          [](const Entry& entry) { return entry.Surface.expired(); }),
+      this->Entries.end());
+    for (Entry& entry : this->Entries)
+    {
+      if (entry.Surface.lock() == problem.Rest)
+      {
+        return entry;
+      }
+    }
+    this->Entries.push_back({ problem.Rest, nullptr, nullptr });
+    return this->Entries.back();
+  }
+
   std::vector<Entry> Entries;
 };
 
@@ -118,11 +159,8 @@ void vtkFrameDeformation::DecorateOutput(const cartan::HandleProblem& problem,
     const auto& model = static_cast<cartan::FrameDeformer&>(deformer).GetVolumeModel();
     const Eigen::VectorXd depth =
       model->IsEmpty() ? Eigen::VectorXd(Eigen::VectorXd::Zero(size)) : model->LocalDepth;
-    const Eigen::VectorXd volume = model->IsEmpty()
-      ? Eigen::VectorXd(
-          Eigen::VectorXd::Constant(size, std::numeric_limits<double>::quiet_NaN()))
-      : cartan::LocalVolumes(*problem.Mesh, *problem.Rest, context)
-          .Measure(result.Positions, context);
+    const Eigen::VectorXd volume =
+      this->Models->MeasureLocalVolumes(problem, *model, result.Positions, context);
     const Eigen::VectorXd scale = result.FrameScale.size() == size
       ? result.FrameScale
       : Eigen::VectorXd(Eigen::VectorXd::Ones(size));

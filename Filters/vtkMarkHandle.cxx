@@ -557,6 +557,10 @@ int vtkMarkHandle::RequestData(
         marked += Mark(handles, mask, this->HandleId, this->Overwrite);
         block.Output->ShallowCopy(block.Input);
         block.Output->GetPointData()->AddArray(handles);
+        if (!block.Output->GetPointData()->GetScalars())
+        {
+          block.Output->GetPointData()->SetActiveScalars(this->HandleArrayName.c_str());
+        }
         part.Report(1.0);
       }
 

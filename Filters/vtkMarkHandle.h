@@ -14,7 +14,8 @@
  * Output: the input with the point array `Handle` (int, one component, no unit;
  * the name is settable): 0 for free points, k >= 1 for the points of handle k.
  * If the input has that array, it is copied and extended, so chained filters
- * mark several handles. The input itself is not touched.
+ * mark several handles. It becomes the active point scalars, by which viewers
+ * color the surface, unless there are others. The input itself is not touched.
  *
  * The region is given by an implicit function (points with a value <= 0 are
  * in: the inside of a box, sphere or cylinder, the back side of a plane), by the

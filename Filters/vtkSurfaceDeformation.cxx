@@ -114,8 +114,9 @@ Eigen::VectorXd ReadSoftWeights(
   cartan::IdSample bad;
   for (std::size_t v = 0; v < handles.size(); ++v)
   {
-    weights[v] = array->GetTuple1(static_cast<vtkIdType>(v));
-    if (handles[v] > 0 && !(weights[v] >= 0.0))
+    // Those of free points mean nothing: they must not look like a change.
+    weights[v] = handles[v] > 0 ? array->GetTuple1(static_cast<vtkIdType>(v)) : 0.0;
+    if (!(weights[v] >= 0.0))
     {
       bad.Add(static_cast<long long>(v));
     }
@@ -275,15 +276,15 @@ vtkBoundingBox BoundsOfHandle(vtkPolyData* surface, const std::string& arrayName
   return bounds;
 }
 
-/// Makes no side shorter than a tenth of the longest; `length` is the longest
-/// side of a box that is a point.
-void Thicken(vtkBoundingBox& bounds, double length)
+/// Makes no side shorter than a tenth of the longest, and the box a little larger
+/// than what it holds; `length` is the longest side of a box that is a point.
+void Widen(vtkBoundingBox& bounds, double length)
 {
-  const double least = 0.1 * (bounds.GetMaxLength() > 0.0 ? bounds.GetMaxLength() : length);
+  const double longest = bounds.GetMaxLength() > 0.0 ? bounds.GetMaxLength() : length;
   double margins[3];
   for (int axis = 0; axis < 3; ++axis)
   {
-    margins[axis] = std::max(0.0, 0.5 * (least - bounds.GetLength(axis)));
+    margins[axis] = std::max(0.02 * longest, 0.5 * (0.1 * longest - bounds.GetLength(axis)));
   }
   bounds.Inflate(margins[0], margins[1], margins[2]);
 }
@@ -617,7 +618,7 @@ double* vtkSurfaceDeformation::GetActiveHandleBounds()
   if (all.IsValid())
   {
     bounds = handle.IsValid() ? handle : all;
-    Thicken(bounds, all.GetMaxLength());
+    Widen(bounds, all.GetMaxLength());
   }
   bounds.GetBounds(this->ActiveHandleBounds);
   return this->ActiveHandleBounds;

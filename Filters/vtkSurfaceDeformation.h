@@ -241,11 +241,11 @@ public:
   ///@}
 
   /**
-   * The box around the points of handle ActiveHandle in the input as it is now,
-   * for user interfaces to draw a widget around: (xmin, xmax, ymin, ymax, zmin,
-   * zmax), no side shorter than a tenth of the longest so that the box of a
-   * flat handle can be grasped too. The input's box if no point belongs to the
-   * handle, the unit cube without input.
+   * A box around the points of handle ActiveHandle in the input as it is now,
+   * (xmin, xmax, ymin, ymax, zmin, zmax), for a widget that moves the handle: a
+   * little larger than the handle, and no side shorter than a tenth of the
+   * longest, so that flat handles can be grasped too. Around all points if none
+   * belongs to the handle; the unit cube without input.
    */
   double* GetActiveHandleBounds() VTK_SIZEHINT(6);
 

@@ -12,6 +12,7 @@
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
@@ -35,8 +36,7 @@ public:
       !IsEqual(this->Reference, pair.Reference))
     {
       this->Volumes.reset();
-      this->Volumes =
-        std::make_unique<cartan::LocalVolumes>(pair.Mesh, pair.Reference, context);
+      this->Volumes = std::make_unique<cartan::LocalVolumes>(pair.Mesh, pair.Reference, context);
       this->Triangles = pair.Mesh.GetTriangles();
       this->Reference = pair.Reference;
     }
@@ -142,10 +142,9 @@ double AddVolume(const std::vector<cartan::ComponentVolume>& reference,
   }
   if (open > 0)
   {
-    const std::string note = reference.size() == 1
-      ? "the surface is open and encloses no volume"
-      : std::to_string(open) + " of " + std::to_string(reference.size()) +
-        " components are open and enclose no volume";
+    const std::string note = reference.size() == 1 ? "the surface is open and encloses no volume"
+                                                   : std::to_string(open) + " of " +
+        std::to_string(reference.size()) + " components are open and enclose no volume";
     table.Add("Volume", Undefined, Undefined, Undefined, note);
     return Undefined;
   }
@@ -295,17 +294,15 @@ int vtkVolumeChange::RequestData(
       output->ShallowCopy(input);
       if (this->ComputeLocalVolume)
       {
-        const cartan::LocalVolumes& volumes =
-          this->Internal->Get(pair, context.Part(0.1, 0.8));
-        const Eigen::VectorXd localVolume =
-          volumes.Measure(pair.Current, context.Part(0.8, 1.0));
+        const cartan::LocalVolumes& volumes = this->Internal->Get(pair, context.Part(0.1, 0.8));
+        const Eigen::VectorXd localVolume = volumes.Measure(pair.Current, context.Part(0.8, 1.0));
         AddPointScalars(output, "LocalVolume", localVolume);
         AddPointScalars(
           output, "LocalVolumeRatio", cartan::Ratios(volumes.GetReference(), localVolume));
       }
       AddPointScalars(output, "AreaRatio",
-        cartan::Ratios(cartan::BarycentricAreas(mesh, areasBefore),
-          cartan::BarycentricAreas(mesh, areasNow)));
+        cartan::Ratios(
+          cartan::BarycentricAreas(mesh, areasBefore), cartan::BarycentricAreas(mesh, areasNow)));
       AddPointScalars(output, "EdgeLengthRatio", edges.VertexRatio);
       AddPointScalars(output, "ShapeDistanceDensity", distance.Density);
       AddCellAreaRatio(output, pair, areasBefore, areasNow);
@@ -314,10 +311,9 @@ int vtkVolumeChange::RequestData(
       this->RelativeVolumeChange = AddVolume(componentsBefore, componentsNow, table);
       this->RelativeAreaChange =
         table.Add("Area", TotalArea(componentsBefore), TotalArea(componentsNow));
-      const std::string edgeNote = edges.ZeroLength.IsEmpty()
-        ? ""
-        : "without " + std::to_string(edges.ZeroLength.GetCount()) +
-          " edges of length zero in the reference";
+      const std::string edgeNote = edges.ZeroLength.IsEmpty() ? ""
+                                                              : "without " +
+          std::to_string(edges.ZeroLength.GetCount()) + " edges of length zero in the reference";
       this->EdgeLengthRMS = edges.RootMeanSquare;
       this->EdgeLengthMax = edges.Maximum;
       table.Add("EdgeLengthRMS", 0.0, edges.RootMeanSquare, edges.RootMeanSquare, edgeNote);
@@ -330,6 +326,7 @@ int vtkVolumeChange::RequestData(
         AddComponents(componentsBefore, componentsNow, table);
       }
       table.MoveTo(outputTable);
+      output->GetPointData()->SetActiveScalars("AreaRatio");
       AddFieldValue(output, "RelativeVolumeChange", this->RelativeVolumeChange);
       AddFieldValue(output, "ShapeDistance", this->ShapeDistance);
     });

@@ -25,6 +25,7 @@
  * - `LocalVolumeRatio` (points): local volume over that of the reference.
  * - `ShapeDistanceDensity` (points): see `ShapeDistance`, in 1 / squared length
  *   units.
+ * `AreaRatio` is the active point scalars, by which viewers color the surface.
  * Field data, one double each: `RelativeVolumeChange`, `ShapeDistance`.
  *
  * Ratios are 1 where nothing has changed and at points in no triangle. They

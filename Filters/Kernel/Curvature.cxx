@@ -66,8 +66,7 @@ public:
     const Eigen::RowVector3d center = this->Positions.row(v);
     double radius = 0.0;
     this->ForFan(v,
-      [&](int w)
-      { radius = std::max(radius, (this->Positions.row(w) - center).squaredNorm()); });
+      [&](int w) { radius = std::max(radius, (this->Positions.row(w) - center).squaredNorm()); });
     // Equal distances, as in a regular grid, must not be told apart by rounding.
     radius *= 1.0001;
     for (int i = 1; i < this->Count; ++i)

@@ -3,6 +3,7 @@
 
 #include "Curvature.h"
 #include "Geometry.h"
+#include "Measures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,10 +17,14 @@ FrameDeformer::FrameDeformer(
   const TriangleMesh& mesh = *this->Problem.Mesh;
   const auto symmetricWeights = [&](LaplacianWeights weights)
   {
-    return std::make_shared<const Eigen::VectorXd>(SymmetricPart(
-      mesh, cartan::EdgeWeights(mesh, *this->Problem.Rest, weights, context)));
+    Eigen::VectorXd symmetric =
+      SymmetricPart(mesh, cartan::EdgeWeights(mesh, *this->Problem.Rest, weights, context));
+    if (this->Problem.ClampWeights)
+    {
+      symmetric = symmetric.cwiseMax(0.0).eval();
+    }
+    return std::make_shared<const Eigen::VectorXd>(std::move(symmetric));
   };
-  using Hold = HandleLaplacian::Hold;
   const bool sameWeights = this->Problem.PositionWeights == this->Problem.Weights;
   const bool isShared = this->Problem.ConstrainPositions && sameWeights;
   const auto frameWeights = symmetricWeights(this->Problem.Weights);
@@ -33,13 +38,12 @@ FrameDeformer::FrameDeformer(
     : std::make_shared<HandleLaplacian>(this->Problem, this->EdgeWeights,
         this->Problem.ConstrainPositions ? Hold::AllHandles : Hold::PinnedOnly, backend,
         context.Part(0.5, 1.0));
+  const std::vector<int> moving = MovingHandleOfVertices(this->Problem);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    const auto& moving = this->Problem.Moving;
-    const auto found = std::lower_bound(moving.begin(), moving.end(), this->Problem.Handle[v]);
-    if (found != moving.end() && *found == this->Problem.Handle[v] && mesh.IsUsed(v))
+    if (moving[v] >= 0 && mesh.IsUsed(v))
     {
-      this->HandleVertices.push_back({ v, static_cast<int>(found - moving.begin()) });
+      this->HandleVertices.push_back({ v, moving[v] });
     }
   }
 }
@@ -48,20 +52,6 @@ int FrameDeformer::GetNumberOfFactorizations() const
 {
   return this->Frames->GetNumberOfFactorizations() +
     (this->Positions == this->Frames ? 0 : this->Positions->GetNumberOfFactorizations());
-}
-
-Eigen::Vector3d FrameDeformer::Target(const HandleTargets& targets, int vertex, int handle) const
-{
-  const Eigen::Vector3d rest = this->Problem.Rest->row(vertex);
-  if (handle < 0)
-  {
-    return rest;
-  }
-  if (targets.Positions.rows())
-  {
-    return targets.Positions.row(vertex);
-  }
-  return targets.Motions[handle].Linear * rest + targets.Motions[handle].Translation;
 }
 
 void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
@@ -73,7 +63,7 @@ void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   for (const HandleVertex& held : this->HandleVertices)
   {
     result.Positions.row(held.Vertex) =
-      this->Target(targets, held.Vertex, held.Handle).transpose();
+      HandleTarget(this->Problem, targets, held.Vertex, held.Handle).transpose();
   }
   const bool isDirect = !this->PreservesVolume() &&
     this->DeformDirectly(targets, result.Positions, context);
@@ -156,7 +146,7 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
         if (system.SquaredSoftWeight(i) > 0.0)
         {
           sum += 0.5 * system.SquaredSoftWeight(i) *
-            this->Target(targets, v, system.MovingHandle(i));
+            HandleTarget(this->Problem, targets, v, system.MovingHandle(i));
         }
         rightHandSide.row(i) = sum;
       }
@@ -221,6 +211,27 @@ void FrameDeformer::CloseVolumes(Points& positions)
   {
     const int v = system.Vertex(i);
     positions.row(v) += steps[mesh.Component(v)] * direction.row(v);
+  }
+
+  IdSample notClosed;
+  if (std::find(steps.begin(), steps.end(), 0.0) != steps.end())
+  {
+    const std::vector<ComponentVolume> components = MeasureComponents(mesh, positions);
+    for (std::size_t c = 0; c < steps.size(); ++c)
+    {
+      const double rest = this->Model->Volumes[c];
+      if (this->Model->EnclosesVolume[c] && std::abs(components[c].Volume - rest) > 1e-9 * rest)
+      {
+        notClosed.Add(static_cast<long long>(c));
+      }
+    }
+  }
+  if (!notClosed.IsEmpty())
+  {
+    this->Warning += (this->Warning.empty() ? "" : " ");
+    this->Warning += "The volume of " + notClosed.Describe("component", "components") +
+      " could not be closed: no displacement of its free points along the volume's gradient "
+      "gives it back. Leave more points free, or deform less.";
   }
 }
 }

@@ -49,6 +49,11 @@ public:
 
   const HandleProblem& GetProblem() const { return this->Problem; }
 
+  /// For what refines the result: the system of the positions, and the symmetric
+  /// weights of the edges in it (#D).
+  std::shared_ptr<const HandleLaplacian> GetPositionSystem() const { return this->Positions; }
+  std::shared_ptr<const Eigen::VectorXd> GetPositionWeights() const { return this->EdgeWeights; }
+
 protected:
   struct HandleVertex
   {
@@ -65,9 +70,6 @@ protected:
   {
     return false;
   }
-
-  /// Where a handle's vertex is to go; handle -1 is pinned.
-  Eigen::Vector3d Target(const HandleTargets& targets, int vertex, int handle) const;
 
   bool PreservesVolume() const
   {

@@ -104,10 +104,35 @@ Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Po
     }
     rightHandSide.row(i) = 0.5 * sum;
   }
-  solver.Factorize(Laplacian(mesh, ones), FixUnused(mesh, isFixed), {}, {}, context);
-  Field solution = positions;
+  const std::vector<char> isGiven = FixUnused(mesh, isFixed);
+  solver.Factorize(Laplacian(mesh, ones), isGiven, {}, {}, context);
+
+  // Relative to a fixed position of each component, so that a seed far from the
+  // origin costs no digits.
+  std::vector<int> references(mesh.NumberOfComponents(), -1);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (isFixed[v] && mesh.IsUsed(v) && references[mesh.Component(v)] < 0)
+    {
+      references[mesh.Component(v)] = v;
+    }
+  }
+  Field solution = Field::Zero(mesh.NumberOfVertices(), 3);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (isFixed[v] && mesh.IsUsed(v))
+    {
+      solution.row(v) = positions.row(v) - positions.row(references[mesh.Component(v)]);
+    }
+  }
   solver.Solve(rightHandSide, solution);
-  positions = solution;
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (!isGiven[v])
+    {
+      positions.row(v) = positions.row(references[mesh.Component(v)]) + solution.row(v);
+    }
+  }
   return positions;
 }
 }

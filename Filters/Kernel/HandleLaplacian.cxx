@@ -16,22 +16,6 @@ double HoldWeight(const HandleProblem& problem, int vertex)
                                     : std::numeric_limits<double>::infinity();
 }
 
-/// Index of each vertex's handle in Moving, -1 for the others.
-std::vector<int> MovingHandleOfVertices(const HandleProblem& problem)
-{
-  std::vector<int> moving(problem.Handle.size(), -1);
-  for (std::size_t v = 0; v < moving.size(); ++v)
-  {
-    const auto found =
-      std::lower_bound(problem.Moving.begin(), problem.Moving.end(), problem.Handle[v]);
-    if (problem.Handle[v] > 0 && found != problem.Moving.end() && *found == problem.Handle[v])
-    {
-      moving[v] = static_cast<int>(found - problem.Moving.begin());
-    }
-  }
-  return moving;
-}
-
 /// Marks the unknown vertices that a moving handle reaches through unknown ones.
 std::vector<char> ReachedUnknowns(const TriangleMesh& mesh, const std::vector<char>& isHeld,
   const std::vector<int>& moving)
@@ -70,6 +54,71 @@ std::vector<char> ReachedUnknowns(const TriangleMesh& mesh, const std::vector<ch
   }
   return isReached;
 }
+
+std::vector<char> HeldVertices(
+  const HandleProblem& problem, Hold hold, const std::vector<int>& moving)
+{
+  std::vector<char> isHeld(problem.Handle.size(), 0);
+  for (std::size_t v = 0; v < isHeld.size(); ++v)
+  {
+    isHeld[v] = problem.Handle[v] > 0 && std::isinf(HoldWeight(problem, static_cast<int>(v))) &&
+      (hold == Hold::AllHandles || moving[v] < 0);
+  }
+  return isHeld;
+}
+}
+
+std::vector<int> MovingHandleOfVertices(const HandleProblem& problem)
+{
+  std::vector<int> moving(problem.Handle.size(), -1);
+  for (std::size_t v = 0; v < moving.size(); ++v)
+  {
+    const auto found =
+      std::lower_bound(problem.Moving.begin(), problem.Moving.end(), problem.Handle[v]);
+    if (problem.Handle[v] > 0 && found != problem.Moving.end() && *found == problem.Handle[v])
+    {
+      moving[v] = static_cast<int>(found - problem.Moving.begin());
+    }
+  }
+  return moving;
+}
+
+std::vector<char> UnknownVertices(const HandleProblem& problem, Hold hold)
+{
+  const std::vector<int> moving = MovingHandleOfVertices(problem);
+  return ReachedUnknowns(*problem.Mesh, HeldVertices(problem, hold, moving), moving);
+}
+
+Eigen::VectorXd SquaredSoftWeights(
+  const HandleProblem& problem, const std::vector<char>& isUnknown, Hold hold)
+{
+  const std::vector<int> moving = MovingHandleOfVertices(problem);
+  Eigen::VectorXd squared = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(isUnknown.size()));
+  for (std::size_t v = 0; v < isUnknown.size(); ++v)
+  {
+    const double weight = HoldWeight(problem, static_cast<int>(v));
+    if (isUnknown[v] && problem.Handle[v] > 0 && std::isfinite(weight) &&
+      (hold == Hold::AllHandles || moving[v] < 0))
+    {
+      squared[static_cast<Eigen::Index>(v)] = weight * weight;
+    }
+  }
+  return squared;
+}
+
+Eigen::Vector3d HandleTarget(
+  const HandleProblem& problem, const HandleTargets& targets, int vertex, int handle)
+{
+  const Eigen::Vector3d rest = problem.Rest->row(vertex);
+  if (handle < 0)
+  {
+    return rest;
+  }
+  if (targets.Positions.rows())
+  {
+    return targets.Positions.row(vertex);
+  }
+  return targets.Motions[handle].Linear * rest + targets.Motions[handle].Translation;
 }
 
 HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
@@ -82,13 +131,8 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
   const int numberOfVertices = mesh.NumberOfVertices();
   const std::vector<int> moving = MovingHandleOfVertices(problem);
 
-  std::vector<char> isHeld(numberOfVertices, 0);
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
-    isHeld[v] = problem.Handle[v] > 0 && std::isinf(HoldWeight(problem, v)) &&
-      (hold == Hold::AllHandles || moving[v] < 0);
-  }
-  const std::vector<char> isUnknown = ReachedUnknowns(mesh, isHeld, moving);
+  const std::vector<char> isUnknown = UnknownVertices(problem, hold);
+  const Eigen::VectorXd soft = cartan::SquaredSoftWeights(problem, isUnknown, hold);
 
   std::vector<int> local(numberOfVertices, -1);
   const auto number = [&](int v)
@@ -98,10 +142,7 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
       local[v] = this->NumberOfLocals();
       this->Vertices.push_back(v);
       this->MovingHandles.push_back(moving[v]);
-      const bool isSoft = isUnknown[v] && problem.Handle[v] > 0 &&
-        std::isfinite(HoldWeight(problem, v));
-      this->SquaredSoftWeights.push_back(
-        isSoft ? HoldWeight(problem, v) * HoldWeight(problem, v) : 0.0);
+      this->SquaredSoftWeights.push_back(soft[v]);
     }
     return local[v];
   };
@@ -170,6 +211,29 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
     Eigen::Map<const Eigen::VectorXd>(
       this->SquaredSoftWeights.data(), static_cast<Eigen::Index>(this->SquaredSoftWeights.size()));
   this->Solver.Factorize(matrix, isFixed, stiffness, this->Vertices, context.Part(0.1, 1.0));
+}
+
+std::vector<HandleLaplacian::Triangle> HandleLaplacian::Triangles(
+  const HandleProblem& problem) const
+{
+  const TriangleMesh& mesh = *problem.Mesh;
+  const Points cornerWeights = CornerWeights(mesh, *problem.Rest, problem.Weights);
+  std::vector<int> local(mesh.NumberOfVertices(), -1);
+  for (int i = 0; i < this->NumberOfLocals(); ++i)
+  {
+    local[this->Vertices[i]] = i;
+  }
+  std::vector<Triangle> triangles;
+  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const Eigen::Vector3i corners(local[mesh.GetTriangles()(t, 0)],
+      local[mesh.GetTriangles()(t, 1)], local[mesh.GetTriangles()(t, 2)]);
+    if (corners.minCoeff() >= 0 && corners.minCoeff() < this->UnknownCount)
+    {
+      triangles.push_back({ corners, cornerWeights.row(t).transpose(), t });
+    }
+  }
+  return triangles;
 }
 
 Field HandleLaplacian::HarmonicFields() const

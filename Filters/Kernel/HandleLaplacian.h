@@ -8,6 +8,29 @@
 
 namespace cartan
 {
+enum class Hold
+{
+  AllHandles, ///< every handle is held
+  PinnedOnly  ///< moving handles are unknown, only pinned ones are held
+};
+
+/// Which vertices are unknown when handles are held: those not held that a
+/// moving handle reaches through vertices not held. Softly held ones are
+/// unknown. #V.
+std::vector<char> UnknownVertices(const HandleProblem& problem, Hold hold);
+
+/// w^2 where an unknown vertex is held softly, else 0: #V.
+Eigen::VectorXd SquaredSoftWeights(
+  const HandleProblem& problem, const std::vector<char>& isUnknown, Hold hold);
+
+/// Index of each vertex's handle in HandleProblem::Moving, -1 for pinned and
+/// free vertices: #V.
+std::vector<int> MovingHandleOfVertices(const HandleProblem& problem);
+
+/// Where a handle's vertex is to go; handle -1 is pinned.
+Eigen::Vector3d HandleTarget(
+  const HandleProblem& problem, const HandleTargets& targets, int vertex, int handle);
+
 /// The Laplacian system on the free vertices that moving handles can reach, the
 /// held ones eliminated. It is factorized once and serves everything that is
 /// harmonic or nearly so: frames, angles and positions.
@@ -18,12 +41,6 @@ namespace cartan
 class HandleLaplacian
 {
 public:
-  enum class Hold
-  {
-    AllHandles, ///< every handle is held
-    PinnedOnly  ///< moving handles are unknown, only pinned ones are held
-  };
-
   /// `edgeWeights` (#D) must be symmetric. Throws Error(SingularSystem) when an
   /// unknown vertex reaches no held one.
   HandleLaplacian(const HandleProblem& problem, std::shared_ptr<const Eigen::VectorXd> edgeWeights,
@@ -53,6 +70,18 @@ public:
   {
     return this->Edges.data() + this->EdgeOffsets[unknown + 1];
   }
+
+  /// A triangle with an unknown corner: its corners in local vertices, and what
+  /// it adds to the weight of the edge opposite to each (CornerWeights).
+  struct Triangle
+  {
+    Eigen::Vector3i Corners;
+    Eigen::Vector3d Weights;
+    int Id; ///< the mesh's triangle
+  };
+
+  /// All triangles around the unknowns, with HandleProblem::Weights.
+  std::vector<Triangle> Triangles(const HandleProblem& problem) const;
 
   /// The functions that are 1 on one handle of HandleProblem::Moving and 0 on
   /// all others and the pinned ones, harmonic elsewhere: #locals x #Moving.

@@ -27,6 +27,8 @@ struct HandleProblem
   LaplacianWeights Weights = LaplacianWeights::Cotangent;
   /// Of the positions. The same as Weights need one factorization less.
   LaplacianWeights PositionWeights = LaplacianWeights::Cotangent;
+  /// Whether negative weights of edges count as zero.
+  bool ClampWeights = false;
   /// Off: the frames of moving handles follow their motions, and the surface
   /// finds its place from the pinned ones alone.
   bool ConstrainPositions = true;

@@ -266,8 +266,7 @@ LocalVolumes::LocalVolumes(
   context.Report(1.0);
 }
 
-Eigen::VectorXd LocalVolumes::Measure(
-  const Points& current, const ExecutionContext& context) const
+Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionContext& context) const
 {
   Field centers = current;
   if (!this->Solver.GetFree().empty())
@@ -281,8 +280,8 @@ Eigen::VectorXd LocalVolumes::Measure(
         {
           const Eigen::Vector3d offset =
             (this->Positions.row(v) - this->Centers.row(v)).transpose();
-          Eigen::Vector3d sum = this->Stiffness[v] *
-            (current.row(v).transpose() - MatrixAt(rotations, v) * offset);
+          Eigen::Vector3d sum =
+            this->Stiffness[v] * (current.row(v).transpose() - MatrixAt(rotations, v) * offset);
           for (int d = this->Mesh.RingBegin(v); d < this->Mesh.RingEnd(v); ++d)
           {
             const int w = this->Mesh.Neighbor(d);
@@ -361,8 +360,8 @@ ShapeDistance ShapeDistanceOfRotations(const TriangleMesh& mesh, const Points& r
   distance.Density = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
   for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    const Eigen::Vector3d cotangents = Cotangents(Corner(mesh, reference, t, 0),
-      Corner(mesh, reference, t, 1), Corner(mesh, reference, t, 2));
+    const Eigen::Vector3d cotangents = Cotangents(
+      Corner(mesh, reference, t, 0), Corner(mesh, reference, t, 1), Corner(mesh, reference, t, 2));
     double energy = 0.0;
     for (int corner = 0; corner < 3; ++corner)
     {

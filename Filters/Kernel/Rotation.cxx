@@ -54,18 +54,87 @@ Eigen::Matrix3d ProjectOnRotations(const Eigen::Matrix3d& a)
     {
       break;
     }
-    const Eigen::Matrix3d inverse = cofactors / determinant;
-    const double scale = std::sqrt(inverse.norm() / x.norm());
-    const Eigen::Matrix3d next = 0.5 * (scale * x + inverse / scale);
+    // |X^-1| / |X| = |cofactors| / (det |X|).
+    const double scale =
+      std::sqrt(std::sqrt(cofactors.squaredNorm() / x.squaredNorm()) / determinant);
+    const Eigen::Matrix3d next =
+      (0.5 * scale) * x + (0.5 / (scale * determinant)) * cofactors;
     const double change = (next - x).squaredNorm();
     x = next;
     // The error after a step is about the square of the change before it.
-    if (change < 1e-18)
+    if (change < 1e-15)
     {
       return x;
     }
   }
   return ProjectBySingularValues(a / size);
+}
+
+Eigen::Matrix3d ProjectOnRotations(const Eigen::Matrix3d& a, const Eigen::Matrix3d& guess)
+{
+  // Newton's method on f(R) = trace(R^T A), which the closest rotation
+  // maximizes. With M = R^T A and R turned on by a rotation vector v,
+  //
+  //   f(R exp v) = trace M + g.v - v.H v / 2 + ...,
+  //   g = (M32 - M23, M13 - M31, M21 - M12),  H = trace(M) I - (M + M^T) / 2.
+  //
+  // Where g = 0, M is symmetric, and f has no maximum but the largest: H is
+  // positive definite there and nowhere else. So a step that is tiny where H is
+  // positive definite proves the result. The third derivative along v vanishes
+  // with M - M^T: the error after a step is about the cube of the step.
+  const double size = a.norm();
+  if (!(size > 1e-300)) // its inverse would overflow
+  {
+    return ProjectOnRotations(a);
+  }
+  const Eigen::Matrix3d scaled = (1.0 / size) * a;
+  Eigen::Matrix3d rotation = guess;
+  for (int step = 0; step < 6; ++step)
+  {
+    const Eigen::Matrix3d m = rotation.transpose() * scaled;
+    const double trace = m.trace();
+    const double h00 = trace - m(0, 0);
+    const double h11 = trace - m(1, 1);
+    const double h22 = trace - m(2, 2);
+    const double h01 = -0.5 * (m(0, 1) + m(1, 0));
+    const double h02 = -0.5 * (m(0, 2) + m(2, 0));
+    const double h12 = -0.5 * (m(1, 2) + m(2, 1));
+    const double c00 = h11 * h22 - h12 * h12;
+    const double c01 = h02 * h12 - h01 * h22;
+    const double c02 = h01 * h12 - h02 * h11;
+    const double c11 = h00 * h22 - h02 * h02;
+    const double c12 = h01 * h02 - h00 * h12;
+    const double c22 = h00 * h11 - h01 * h01;
+    const double determinant = h00 * c00 + h01 * c01 + h02 * c02;
+    // A smaller determinant: two rotations are nearly equally close, and
+    // decomposition tells better which is closest.
+    if (!(trace > 0.0 && h00 > 0.0 && c22 > 0.0 && determinant > 1e-6))
+    {
+      break;
+    }
+    const Eigen::Vector3d g(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
+    // Half of the step, as the vector part of a quaternion whose scalar is one.
+    const double scale = 0.5 / determinant;
+    const double x = scale * (c00 * g[0] + c01 * g[1] + c02 * g[2]);
+    const double y = scale * (c01 * g[0] + c11 * g[1] + c12 * g[2]);
+    const double z = scale * (c02 * g[0] + c12 * g[1] + c22 * g[2]);
+    const double squaredLength = x * x + y * y + z * z;
+    const double s = 2.0 / (1.0 + squaredLength);
+    Eigen::Matrix3d turn;
+    turn << 1.0 - s * (y * y + z * z), s * (x * y - z), s * (x * z + y), //
+      s * (x * y + z), 1.0 - s * (x * x + z * z), s * (y * z - x),       //
+      s * (x * z - y), s * (y * z + x), 1.0 - s * (x * x + y * y);
+    rotation = rotation * turn;
+    // The cube of the step over a lower bound of H's smallest eigenvalue.
+    if (8.0 * squaredLength * std::sqrt(squaredLength) < 1e-16 * determinant)
+    {
+      // The products of many updates drift off the rotations by rounding: a
+      // step of R <- R (3 I - R^T R) / 2 takes them back.
+      return rotation *
+        (1.5 * Eigen::Matrix3d::Identity() - 0.5 * (rotation.transpose() * rotation));
+    }
+  }
+  return ProjectOnRotations(a);
 }
 
 Eigen::Matrix3d RotationFromVector(const Eigen::Vector3d& rotationVector)

@@ -13,6 +13,12 @@ namespace cartan
 /// are equally close (rank below two) one of them; the identity for A = 0.
 Eigen::Matrix3d ProjectOnRotations(const Eigen::Matrix3d& a);
 
+/// The same from a rotation that is near it, such as that of the iterate before:
+/// as exact, and several times faster for the matrices that surfaces make, whose
+/// smallest singular value is next to zero. The result does not depend on
+/// `guess` beyond rounding; a poor one costs time only.
+Eigen::Matrix3d ProjectOnRotations(const Eigen::Matrix3d& a, const Eigen::Matrix3d& guess);
+
 /// The rotation about the axis of `rotationVector` by its length in radians,
 /// of any size.
 Eigen::Matrix3d RotationFromVector(const Eigen::Vector3d& rotationVector);

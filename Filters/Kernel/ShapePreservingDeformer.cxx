@@ -210,45 +210,18 @@ void ShapePreservingDeformer::BlendStretches(const HandleTargets& targets)
   }
 }
 
-void ShapePreservingDeformer::PrepareIteration()
-{
-  if (!this->LocalTriangles.empty())
-  {
-    return;
-  }
-  const TriangleMesh& mesh = *this->Problem.Mesh;
-  const HandleLaplacian& frames = *this->Frames;
-  const Points cornerWeights = CornerWeights(mesh, *this->Problem.Rest, this->Problem.Weights);
-  std::vector<int> local(mesh.NumberOfVertices(), -1);
-  for (int i = 0; i < frames.NumberOfLocals(); ++i)
-  {
-    local[frames.Vertex(i)] = i;
-  }
-  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    const Eigen::Vector3i corners(local[mesh.GetTriangles()(t, 0)],
-      local[mesh.GetTriangles()(t, 1)], local[mesh.GetTriangles()(t, 2)]);
-    // Triangles of held vertices alone are constant in the energy.
-    if (corners.minCoeff() >= 0 && corners.minCoeff() < frames.NumberOfUnknowns())
-    {
-      this->LocalTriangles.push_back(corners);
-      this->LocalCornerWeights.push_back(cornerWeights.row(t).transpose());
-    }
-  }
-}
-
 double ShapePreservingDeformer::Energy(const Field& eta) const
 {
   double energy = 0.0;
-  for (std::size_t t = 0; t < this->LocalTriangles.size(); ++t)
+  for (const HandleLaplacian::Triangle& triangle : this->Triangles)
   {
-    const Eigen::Vector3i& corners = this->LocalTriangles[t];
+    const Eigen::Vector3i& corners = triangle.Corners;
     double weight = 0.0;
     double dirichlet = 0.0;
     for (int c = 0; c < 3; ++c)
     {
       weight += ConformalWeight(eta.row(corners[c]));
-      dirichlet += this->LocalCornerWeights[t][c] *
+      dirichlet += triangle.Weights[c] *
         (eta.row(corners[(c + 1) % 3]) - eta.row(corners[(c + 2) % 3])).squaredNorm();
     }
     energy += weight * dirichlet;
@@ -258,7 +231,10 @@ double ShapePreservingDeformer::Energy(const Field& eta) const
 
 Field ShapePreservingDeformer::Iterate(Field eta, const ExecutionContext& context)
 {
-  this->PrepareIteration();
+  if (this->Triangles.empty())
+  {
+    this->Triangles = this->Frames->Triangles(this->Problem);
+  }
   const HandleLaplacian& frames = *this->Frames;
   const int numberOfLocals = frames.NumberOfLocals();
   std::vector<char> isFixed(numberOfLocals, 0);
@@ -301,22 +277,22 @@ Field ShapePreservingDeformer::Iterate(Field eta, const ExecutionContext& contex
     context.Report(0.5);
     entries.clear();
     Field rightHandSide = softTargets;
-    for (std::size_t t = 0; t < this->LocalTriangles.size(); ++t)
+    for (const HandleLaplacian::Triangle& triangle : this->Triangles)
     {
-      const Eigen::Vector3i& corners = this->LocalTriangles[t];
+      const Eigen::Vector3i& corners = triangle.Corners;
       double weight = 0.0;
       double dirichlet = 0.0;
       for (int c = 0; c < 3; ++c)
       {
         weight += ConformalWeight(eta.row(corners[c]));
-        dirichlet += this->LocalCornerWeights[t][c] *
+        dirichlet += triangle.Weights[c] *
           (eta.row(corners[(c + 1) % 3]) - eta.row(corners[(c + 2) % 3])).squaredNorm();
       }
       for (int c = 0; c < 3; ++c)
       {
         const int a = corners[(c + 1) % 3];
         const int b = corners[(c + 2) % 3];
-        const double value = weight * this->LocalCornerWeights[t][c];
+        const double value = weight * triangle.Weights[c];
         entries.emplace_back(a, a, value);
         entries.emplace_back(b, b, value);
         entries.emplace_back(a, b, -value);

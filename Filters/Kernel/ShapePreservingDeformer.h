@@ -67,7 +67,6 @@ private:
   void BlendStretches(const HandleTargets& targets);
   Field Iterate(Field eta, const ExecutionContext& context);
   double Energy(const Field& eta) const;
-  void PrepareIteration();
 
   int MaximumIterations = 1;
   double Tolerance = 1e-6;
@@ -78,10 +77,8 @@ private:
 
   Field Harmonic; ///< #locals x #Moving: h_k
 
-  /// The triangles around the unknowns, in local vertices, with their weights
-  /// opposite to each corner. Empty until an iteration needs them.
-  std::vector<Eigen::Vector3i> LocalTriangles;
-  std::vector<Eigen::Vector3d> LocalCornerWeights;
+  /// Empty until an iteration needs them.
+  std::vector<HandleLaplacian::Triangle> Triangles;
   ConstrainedSolver IterationSolver;
 };
 }

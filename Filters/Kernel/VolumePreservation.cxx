@@ -75,24 +75,33 @@ void FillDepths(const TriangleMesh& mesh, const SparseMatrix& laplacian, VolumeM
 Points SmoothedCenters(const TriangleMesh& mesh, const Points& points,
   const SparseMatrix& laplacian, const Points& centers, const VolumeModel& model)
 {
-  std::vector<double> depths;
+  std::vector<std::vector<double>> depths(mesh.NumberOfComponents());
   std::vector<char> isFixed(mesh.NumberOfVertices(), 1);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     if (mesh.IsUsed(v) && model.EnclosesVolume[mesh.Component(v)])
     {
       isFixed[v] = 0;
-      depths.push_back(model.LocalDepth[v]);
+      depths[mesh.Component(v)].push_back(model.LocalDepth[v]);
     }
   }
-  std::nth_element(depths.begin(), depths.begin() + depths.size() / 2, depths.end());
-  const double median = depths[depths.size() / 2];
-  const double step = 0.02 * median * median;
-  const Eigen::VectorXd areas = MixedVoronoiAreas(mesh, points);
+  // A step for each component, so that none depends on what others are there.
+  std::vector<double> steps;
+  for (std::vector<double>& some : depths)
+  {
+    const auto middle = some.begin() + some.size() / 2;
+    std::nth_element(some.begin(), middle, some.end());
+    steps.push_back(some.empty() ? 1.0 : 0.02 * *middle * *middle);
+  }
+  Eigen::VectorXd stiffness = MixedVoronoiAreas(mesh, points);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    stiffness[v] /= mesh.IsUsed(v) ? steps[mesh.Component(v)] : 1.0;
+  }
   ConstrainedSolver solver;
-  solver.Factorize(step * laplacian, isFixed, areas);
+  solver.Factorize(laplacian, isFixed, stiffness);
   Field smoothed = centers;
-  solver.Solve(areas.asDiagonal() * centers, smoothed);
+  solver.Solve(stiffness.asDiagonal() * centers, smoothed);
   return smoothed;
 }
 
@@ -181,9 +190,21 @@ VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
       isAnyMeasured[mesh.Component(v)] = 1;
     }
   }
+  IdSample unmeasured;
   for (int c = 0; c < mesh.NumberOfComponents(); ++c)
   {
-    model.EnclosesVolume[c] = model.EnclosesVolume[c] && isAnyMeasured[c];
+    if (model.EnclosesVolume[c] && !isAnyMeasured[c])
+    {
+      unmeasured.Add(c);
+      model.EnclosesVolume[c] = 0;
+    }
+  }
+  if (!unmeasured.IsEmpty())
+  {
+    model.Warning += (model.Warning.empty() ? "" : " ");
+    model.Warning += "No volume is preserved in " +
+      unmeasured.Describe("component", "components") +
+      " whose inside no ray has found: the surface is folded flat, or crosses itself.";
   }
   if (std::none_of(
         model.EnclosesVolume.begin(), model.EnclosesVolume.end(), [](char e) { return e; }))
@@ -258,18 +279,30 @@ Points VolumeGradient(const TriangleMesh& mesh, const Points& points)
 std::vector<double> VolumeClosingSteps(const TriangleMesh& mesh, const Points& points,
   const Points& direction, const std::vector<char>& takesPart, const std::vector<double>& volumes)
 {
+  // A vertex of each component as its origin, which keeps the digits of one that
+  // has gone far.
+  std::vector<Eigen::Vector3d> origins(mesh.NumberOfComponents(), Eigen::Vector3d::Zero());
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (mesh.IsUsed(v))
+    {
+      origins[mesh.Component(v)] = points.row(v).transpose();
+    }
+  }
   // Volume(x + q u) = c0 + c1 q + c2 q^2 + c3 q^3, per component.
   std::vector<std::array<double, 4>> cubics(mesh.NumberOfComponents(), { 0.0, 0.0, 0.0, 0.0 });
   for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
+    const int component = mesh.Component(mesh.GetTriangles()(t, 0));
     Eigen::Matrix3d x;
     Eigen::Matrix3d u;
     for (int corner = 0; corner < 3; ++corner)
     {
-      x.col(corner) = points.row(mesh.GetTriangles()(t, corner)).transpose();
+      x.col(corner) =
+        points.row(mesh.GetTriangles()(t, corner)).transpose() - origins[component];
       u.col(corner) = direction.row(mesh.GetTriangles()(t, corner)).transpose();
     }
-    auto& cubic = cubics[mesh.Component(mesh.GetTriangles()(t, 0))];
+    auto& cubic = cubics[component];
     const auto determinant = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                const Eigen::Vector3d& c) { return a.dot(b.cross(c)) / 6.0; };
     cubic[0] += determinant(x.col(0), x.col(1), x.col(2));

@@ -48,7 +48,8 @@ struct VolumeModel
 /// Measures the depth by a cone of rays (half angle 15 degrees) around the
 /// inward normal, the mean of those that leave the body, and places the middle
 /// of the body c = p - L / 2 N, smoothed by one implicit step (M + tau L) c' =
-/// M c, tau = .02 median(depth)^2. IsEmpty() if no component encloses volume.
+/// M c, tau = .02 median(depth)^2 of the component. IsEmpty() if no component
+/// encloses volume.
 VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
   const RayCaster& castRay, const ExecutionContext& context = {});
 
@@ -69,7 +70,7 @@ Points VolumeGradient(const TriangleMesh& mesh, const Points& points);
 /// The amounts q, one per component, so that points + q * direction enclose
 /// `volumes` in the components where `takesPart` is set; 0 in the others. The
 /// volume is a cubic in q, whose root nearest to 0 is taken. Components whose
-/// direction changes no volume keep 0.
+/// direction changes no volume, or cannot reach the given one, keep 0.
 std::vector<double> VolumeClosingSteps(const TriangleMesh& mesh, const Points& points,
   const Points& direction, const std::vector<char>& takesPart,
   const std::vector<double>& volumes);

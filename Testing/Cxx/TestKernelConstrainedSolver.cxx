@@ -288,10 +288,10 @@ TEST(ConstrainedSolver, WithAllUnknownsFixedChangesNothing)
       EXPECT_EQ(values, given);
       solver.Factorize(matrix, EveryFifth(matrix.rows()));
       solver.Solve(Field::Zero(matrix.rows(), 3), values);
-      EXPECT_LT((values -
-                  SolveDensely(matrix, EveryFifth(matrix.rows()), {},
-                    Field::Zero(matrix.rows(), 3), given))
-                  .norm(),
+      EXPECT_LT(
+        (values -
+          SolveDensely(matrix, EveryFifth(matrix.rows()), {}, Field::Zero(matrix.rows(), 3), given))
+          .norm(),
         1e-12)
         << isFirst;
     }
@@ -360,7 +360,9 @@ TEST(ConstrainedSolver, IsNotConnectedByEntriesThatAreZero)
   matrix.setFromTriplets(entries.begin(), entries.end());
   ConstrainedSolver solver;
   ExpectError(ErrorCode::SingularSystem, { "2 points (ids 1, 2)", "2 connected parts" },
-    [&]() { solver.Factorize(matrix, { 1, 0, 0 }); });
+    [&]() {
+      solver.Factorize(matrix, { 1, 0, 0 });
+    });
 }
 
 TEST(ConstrainedSolver, RefusesAMatrixThatIsNotPositiveAndWorksAfterwards)

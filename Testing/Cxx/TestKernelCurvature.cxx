@@ -107,8 +107,9 @@ TEST(Curvature, TiltedPlaneIsFlatUpToRounding)
 
 TEST(Curvature, SphereIsExactWhateverItsTriangles)
 {
-  for (const shapes::Shape& sphere : { shapes::Icosphere(0, 2.0), shapes::Icosphere(3, 2.0),
-         shapes::UvSphere(8, 5, 2.0), shapes::UvSphere(60, 20, 2.0), shapes::UvSphere(200, 9, 2.0) })
+  for (const shapes::Shape& sphere :
+    { shapes::Icosphere(0, 2.0), shapes::Icosphere(3, 2.0), shapes::UvSphere(8, 5, 2.0),
+      shapes::UvSphere(60, 20, 2.0), shapes::UvSphere(200, 9, 2.0) })
   {
     const Curvatures curvatures = Fit(sphere);
     EXPECT_LT((curvatures.Mean.array() - 0.5).abs().maxCoeff(), 1e-8);
@@ -148,7 +149,9 @@ TEST(Curvature, ConvergesWithTheSquareOfTheEdgeLengthOnRegularMeshes)
   EXPECT_GT(Order([](int n) { return shapes::Torus(24 << n, 10 << n); }, OnTorus), 1.7);
   EXPECT_GT(Order([](int n) { return shapes::Ellipsoid(2 + n, HalfAxes); }, OnEllipsoid), 1.7);
   EXPECT_GT(Order([](int n) { return shapes::OpenCylinder(24 << n, 8 << n); },
-              [](const Eigen::Vector3d&) { return Exact{ 0.5, 0.0 }; }),
+              [](const Eigen::Vector3d&) {
+                return Exact{ 0.5, 0.0 };
+              }),
     1.7);
 }
 
@@ -161,7 +164,9 @@ TEST(Curvature, ConvergesOnIrregularMeshes)
 TEST(Curvature, ConvergesAtIrregularBorders)
 {
   EXPECT_GT(Order([](int n) { return shapes::OpenCylinder(24 << n, 8 << n, 1.0, 2.0, 0.3); },
-              [](const Eigen::Vector3d&) { return Exact{ 0.5, 0.0 }; }),
+              [](const Eigen::Vector3d&) {
+                return Exact{ 0.5, 0.0 };
+              }),
     1.0);
   EXPECT_GT(Order([](int n) { return shapes::Saddle(10 << n, 2.0, 0.3); }, OnSaddle), 1.0);
 }
@@ -178,8 +183,7 @@ TEST(Curvature, SmallNoiseChangesLittle)
   const double edge = 2.0 * shapes::Pi * 0.7 / 30.0;
   const Curvatures noisy = Fit(shapes::Noisy(smooth, 0.01 * edge));
   const Curvatures exact = Fit(smooth);
-  const double rms =
-    std::sqrt((noisy.Mean - exact.Mean).squaredNorm() / smooth.NumberOfVertices());
+  const double rms = std::sqrt((noisy.Mean - exact.Mean).squaredNorm() / smooth.NumberOfVertices());
   EXPECT_LT(rms, 0.05);
 }
 
@@ -193,8 +197,7 @@ TEST(Curvature, GaussBonnetHoldsInTheLimit)
 
   const auto totalOfTorus = [](int refinement)
   {
-    const shapes::Shape torus =
-      shapes::Torus(48 << refinement, 20 << refinement, 2.0, 0.7, 0.2);
+    const shapes::Shape torus = shapes::Torus(48 << refinement, 20 << refinement, 2.0, 0.7, 0.2);
     const TriangleMesh torusMesh(torus.NumberOfVertices(), torus.Faces);
     return std::abs(MixedVoronoiAreas(torusMesh, torus.Positions)
                       .dot(FitCurvatures(torusMesh, torus.Positions).Gaussian));
@@ -271,8 +274,8 @@ TEST(Curvature, DoesNotDependOnHowTheLoopIsSplit)
       other.join();
     },
     [](double) { return true; });
-  EXPECT_EQ(FitCurvatures(mesh, shape.Positions).Mean,
-    FitCurvatures(mesh, shape.Positions, split).Mean);
+  EXPECT_EQ(
+    FitCurvatures(mesh, shape.Positions).Mean, FitCurvatures(mesh, shape.Positions, split).Mean);
 }
 
 TEST(Curvature, DefinedAtDegenerateVertices)
@@ -298,7 +301,8 @@ TEST(Curvature, DefinedAtDegenerateVertices)
 
   // A tetrahedron has three neighbors per vertex, too few for a quadric.
   shapes::Shape tetrahedron;
-  tetrahedron.Positions = shapes::ToPoints({ { 1, 1, 1 }, { 1, -1, -1 }, { -1, 1, -1 }, { -1, -1, 1 } });
+  tetrahedron.Positions =
+    shapes::ToPoints({ { 1, 1, 1 }, { 1, -1, -1 }, { -1, 1, -1 }, { -1, -1, 1 } });
   tetrahedron.Faces = shapes::ToTriangles({ { 0, 1, 2 }, { 0, 2, 3 }, { 0, 3, 1 }, { 1, 3, 2 } });
   const Curvatures corners = Fit(tetrahedron);
   EXPECT_LT((corners.Mean.array() - 1.0 / std::sqrt(3.0)).abs().maxCoeff(), 1e-6);
@@ -351,8 +355,7 @@ TEST(CurvaturesFromNormals, FiniteWhereThereIsNoNormal)
   triangle << 0, 1, 2;
   const Points points = Points::Ones(4, 3);
   const TriangleMesh mesh(4, triangle);
-  const Curvatures curvatures =
-    CurvaturesFromNormals(mesh, points, VertexNormals(mesh, points));
+  const Curvatures curvatures = CurvaturesFromNormals(mesh, points, VertexNormals(mesh, points));
   EXPECT_TRUE(AllFinite(curvatures));
   EXPECT_EQ(curvatures.Mean.cwiseAbs().maxCoeff(), 0.0);
 }

@@ -14,8 +14,7 @@ namespace
 {
 double Area(const Shape& shape)
 {
-  return 0.5 *
-    cartan::TriangleAreaVectors(shape.Positions, shape.Faces).rowwise().norm().sum();
+  return 0.5 * cartan::TriangleAreaVectors(shape.Positions, shape.Faces).rowwise().norm().sum();
 }
 
 Eigen::VectorXd MixedAreas(const Shape& shape)
@@ -30,8 +29,8 @@ Shape Triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::
 
 /// The area of the part of a convex polygon in the plane z = 0 that is nearer
 /// to p than to q (Sutherland-Hodgman clipping).
-std::vector<Eigen::Vector3d> ClipNearer(const std::vector<Eigen::Vector3d>& polygon,
-  const Eigen::Vector3d& p, const Eigen::Vector3d& q)
+std::vector<Eigen::Vector3d> ClipNearer(
+  const std::vector<Eigen::Vector3d>& polygon, const Eigen::Vector3d& p, const Eigen::Vector3d& q)
 {
   const auto side = [&](const Eigen::Vector3d& x)
   { return (x - q).squaredNorm() - (x - p).squaredNorm(); };
@@ -151,8 +150,7 @@ TEST(MixedAreas, SumToTheSurfaceAndAreNotNegative)
 TEST(MixedAreas, OfSpecialTriangles)
 {
   const double h = std::sqrt(3.0) / 2.0;
-  const Eigen::VectorXd equilateral =
-    MixedAreas(Triangle({ 0, 0, 0 }, { 1, 0, 0 }, { 0.5, h, 0 }));
+  const Eigen::VectorXd equilateral = MixedAreas(Triangle({ 0, 0, 0 }, { 1, 0, 0 }, { 0.5, h, 0 }));
   for (int v = 0; v < 3; ++v)
   {
     EXPECT_NEAR(equilateral[v], h / 6.0, 1e-15);
@@ -195,8 +193,8 @@ TEST(MixedAreas, OfAcuteTrianglesAreTheNearestPointsRegions)
     const Eigen::VectorXd areas = MixedAreas(Triangle(corners[0], corners[1], corners[2]));
     for (int c = 0; c < 3; ++c)
     {
-      const auto region = ClipNearer(ClipNearer(corners, corners[c], corners[(c + 1) % 3]),
-        corners[c], corners[(c + 2) % 3]);
+      const auto region = ClipNearer(
+        ClipNearer(corners, corners[c], corners[(c + 1) % 3]), corners[c], corners[(c + 2) % 3]);
       EXPECT_NEAR(areas[c], PolygonArea(region), 1e-13);
     }
   }
@@ -205,6 +203,5 @@ TEST(MixedAreas, OfAcuteTrianglesAreTheNearestPointsRegions)
 TEST(BoundingDiagonal, IsThatOfTheBox)
 {
   EXPECT_EQ(cartan::BoundingDiagonal(Points(0, 3)), 0.0);
-  EXPECT_DOUBLE_EQ(
-    cartan::BoundingDiagonal(shapes::Bar(2, 2, 2, { 2, 3, 6 }).Positions), 7.0);
+  EXPECT_DOUBLE_EQ(cartan::BoundingDiagonal(shapes::Bar(2, 2, 2, { 2, 3, 6 }).Positions), 7.0);
 }

@@ -15,8 +15,8 @@ using shapes::Shape;
 
 namespace
 {
-constexpr LaplacianWeights AllWeights[] = { LaplacianWeights::Uniform,
-  LaplacianWeights::Cotangent, LaplacianWeights::MeanValue };
+constexpr LaplacianWeights AllWeights[] = { LaplacianWeights::Uniform, LaplacianWeights::Cotangent,
+  LaplacianWeights::MeanValue };
 
 Eigen::VectorXd Weights(const Shape& shape, LaplacianWeights weights)
 {
@@ -168,10 +168,9 @@ TEST(Laplacian, WithCotangentsIsTheDirichletEnergy)
     for (const bool isLinear : { true, false })
     {
       const Eigen::Vector3d direction{ random(), random(), random() };
-      const Eigen::VectorXd f = isLinear
-        ? Eigen::VectorXd(surface.Positions * direction)
-        : Eigen::VectorXd(
-            Eigen::VectorXd::NullaryExpr(laplacian.rows(), [&random]() { return random(); }));
+      const Eigen::VectorXd f = isLinear ? Eigen::VectorXd(surface.Positions * direction)
+                                         : Eigen::VectorXd(Eigen::VectorXd::NullaryExpr(
+                                             laplacian.rows(), [&random]() { return random(); }));
       double energy = 0.0;
       for (Eigen::Index t = 0; t < surface.Faces.rows(); ++t)
       {
@@ -223,7 +222,8 @@ TEST(EdgeWeights, OfEquilateralAndRightTriangles)
   EXPECT_NEAR(WeightOf(rhombus, LaplacianWeights::MeanValue, 2, 0), tan30 / Unit, 1e-15);
 
   Shape square; // two right triangles at the diagonal (0, 2)
-  square.Positions = Unit * shapes::ToPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } });
+  square.Positions =
+    Unit * shapes::ToPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } });
   square.Faces = shapes::ToTriangles({ { 0, 1, 2 }, { 0, 2, 3 } });
   const double tan22 = std::sqrt(2.0) - 1.0; // of half 45 degrees
   EXPECT_NEAR(WeightOf(square, LaplacianWeights::Cotangent, 0, 2), 0.0, 1e-15);
@@ -237,8 +237,7 @@ TEST(EdgeWeights, OfEquilateralAndRightTriangles)
   obtuse.Positions = shapes::ToPoints({ { 0, 0, 0 }, { 2 * h, 0, 0 }, { h, 0.5, 0 } });
   obtuse.Faces = shapes::ToTriangles({ { 0, 1, 2 } });
   EXPECT_NEAR(WeightOf(obtuse, LaplacianWeights::Cotangent, 0, 1), -0.5 * cot60, 1e-15);
-  EXPECT_NEAR(
-    WeightOf(obtuse, LaplacianWeights::MeanValue, 2, 0), std::sqrt(3.0), 1e-14); // tan 60
+  EXPECT_NEAR(WeightOf(obtuse, LaplacianWeights::MeanValue, 2, 0), std::sqrt(3.0), 1e-14); // tan 60
 }
 
 TEST(EdgeWeights, ScaleAsTheirUnitsSay)
@@ -270,8 +269,8 @@ TEST(EdgeWeights, StayFiniteOnDegenerateTriangles)
 {
   // A needle with its tip on the edge, one of coinciding points, a proper one.
   Shape shape;
-  shape.Positions = shapes::ToPoints(
-    { { 0, 0, 0 }, { 1, 0, 0 }, { 0.4, 0, 0 }, { 0.5, 1, 0 }, { 0.5, 1, 0 } });
+  shape.Positions =
+    shapes::ToPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.4, 0, 0 }, { 0.5, 1, 0 }, { 0.5, 1, 0 } });
   shape.Faces = shapes::ToTriangles({ { 0, 2, 1 }, { 0, 1, 3 }, { 1, 4, 3 } });
   for (const LaplacianWeights weights : AllWeights)
   {

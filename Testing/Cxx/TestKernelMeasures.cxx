@@ -243,9 +243,9 @@ TEST(ShapeDistance, VanishesForRigidMotionsOnly)
 {
   const shapes::Shape shape = shapes::Torus(32, 16, 2.0, 0.7, 0.2);
   const TriangleMesh mesh = MeshOf(shape);
-  EXPECT_LT(MeasureShapeDistance(
-              mesh, shape.Positions, shapes::RandomRigidMotion(3, 10.0)(shape.Positions))
-              .Total,
+  EXPECT_LT(
+    MeasureShapeDistance(mesh, shape.Positions, shapes::RandomRigidMotion(3, 10.0)(shape.Positions))
+      .Total,
     1e-20);
   EXPECT_GT(
     MeasureShapeDistance(mesh, shape.Positions, shapes::Noisy(shape, 0.05).Positions).Total, 1.0);
@@ -257,13 +257,13 @@ TEST(ShapeDistance, InvariantToRigidMotionsOfEitherSurface)
   const TriangleMesh mesh = MeshOf(bar);
   const Points bent = BentBar(bar.Positions, 1.0, 4.0, 2.0);
   const ShapeDistance distance = MeasureShapeDistance(mesh, bar.Positions, bent);
-  const ShapeDistance moved = MeasureShapeDistance(mesh,
-    shapes::RandomRigidMotion(1)(bar.Positions), shapes::RandomRigidMotion(2, 5.0)(bent));
+  const ShapeDistance moved = MeasureShapeDistance(
+    mesh, shapes::RandomRigidMotion(1)(bar.Positions), shapes::RandomRigidMotion(2, 5.0)(bent));
   EXPECT_NEAR(moved.Total, distance.Total, 1e-10);
   EXPECT_LT((moved.Density - distance.Density).cwiseAbs().maxCoeff(), 1e-10);
   // Without unit.
-  EXPECT_NEAR(MeasureShapeDistance(mesh, 1e-6 * bar.Positions, 1e-6 * bent).Total,
-    distance.Total, 1e-10);
+  EXPECT_NEAR(
+    MeasureShapeDistance(mesh, 1e-6 * bar.Positions, 1e-6 * bent).Total, distance.Total, 1e-10);
 }
 
 TEST(ShapeDistance, OfARolledPlaneIsTheIntegralOfTheSquaredCurvature)
@@ -288,8 +288,7 @@ TEST(ShapeDistance, DensityIntegratesToTheTotal)
   const ShapeDistance distance =
     MeasureShapeDistance(mesh, bar.Positions, BentBar(bar.Positions, 1.0, 4.0, 2.0));
   EXPECT_TRUE((distance.Density.array() >= 0.0).all());
-  EXPECT_NEAR(
-    distance.Density.dot(BarycentricAreas(mesh, TriangleAreas(mesh, bar.Positions))),
+  EXPECT_NEAR(distance.Density.dot(BarycentricAreas(mesh, TriangleAreas(mesh, bar.Positions))),
     distance.Total, 1e-12);
 }
 
@@ -298,8 +297,7 @@ TEST(ShapeDistance, FiniteOnDegenerateTriangles)
   shapes::Shape plane = shapes::Plane(4);
   const Points current = plane.Positions;
   plane.Positions.row(7) = plane.Positions.row(6);
-  const ShapeDistance distance =
-    MeasureShapeDistance(MeshOf(plane), plane.Positions, current);
+  const ShapeDistance distance = MeasureShapeDistance(MeshOf(plane), plane.Positions, current);
   EXPECT_TRUE(std::isfinite(distance.Total));
   EXPECT_TRUE(distance.Density.allFinite());
 }

@@ -52,8 +52,7 @@ void ExpectClosestRotation(const Matrix3d& a)
   const Matrix3d r = ProjectOnRotations(a);
   EXPECT_LT((r.transpose() * r - Matrix3d::Identity()).norm(), 1e-13) << a;
   EXPECT_NEAR(r.determinant(), 1.0, 1e-13) << a;
-  EXPECT_NEAR((r.transpose() * a).trace(), LargestTrace(a), 1e-13 * (1e-300 + a.norm()))
-    << a;
+  EXPECT_NEAR((r.transpose() * a).trace(), LargestTrace(a), 1e-13 * (1e-300 + a.norm())) << a;
 }
 }
 
@@ -75,6 +74,37 @@ TEST(ClosestRotation, AgreesWithTheQuaternionMethodForAllSignsAndRanks)
     ExpectClosestRotation(u * v.transpose() + v * a.row(2) - 1e-5 * a);
   }
   EXPECT_GT(reflections, 500);
+}
+
+TEST(ClosestRotation, FromAGuessIsTheSame)
+{
+  // A near guess, a rotation that has nothing to do with A, and the worst one:
+  // half a turn away.
+  shapes::Random random(9);
+  for (int trial = 0; trial < 1000; ++trial)
+  {
+    const Matrix3d a = RandomMatrix(random);
+    const Vector3d u(a.col(0));
+    const Vector3d v(a.col(1));
+    const Matrix3d rankTwo = u * v.transpose() + v * a.row(2);
+    for (const Matrix3d& matrix : { a, rankTwo, Matrix3d(rankTwo - 1e-5 * a),
+           Matrix3d(u * v.transpose()), Matrix3d(1e-9 * a), RandomRotation(random) })
+    {
+      const Matrix3d closest = ProjectOnRotations(matrix);
+      for (const Matrix3d& guess :
+        { closest, Matrix3d(closest * RotationFromVector(0.01 * Vector3d(random(), 1, 1))),
+          RandomRotation(random), Matrix3d(closest * RotationFromVector(Vector3d(Pi, 0, 0))),
+          Matrix3d(closest * RotationFromVector(Vector3d(0, 0, Pi))) })
+      {
+        const Matrix3d r = ProjectOnRotations(matrix, guess);
+        ASSERT_LT((r.transpose() * r - Matrix3d::Identity()).norm(), 1e-13);
+        ASSERT_NEAR(r.determinant(), 1.0, 1e-13);
+        ASSERT_NEAR((r.transpose() * matrix).trace(), LargestTrace(matrix), 1e-13 * matrix.norm())
+          << matrix << "\nguess\n"
+          << guess;
+      }
+    }
+  }
 }
 
 TEST(ClosestRotation, IsABetterFitThanItsNeighbors)
@@ -174,6 +204,63 @@ TEST(ClosestRotation, OfABlendOfRotationsAboutOneAxisTurnsByTheBlendsAngle)
   }
 }
 
+TEST(ClosestRotation, IsTheSameFromAnyGuess)
+{
+  shapes::Random random(9);
+  double worst = 0.0;
+  const auto expectClosest = [&](const Matrix3d& a, const Matrix3d& guess)
+  {
+    const Matrix3d r = ProjectOnRotations(a, guess);
+    EXPECT_LT((r.transpose() * r - Matrix3d::Identity()).norm(), 1e-14) << a;
+    EXPECT_NEAR(r.determinant(), 1.0, 1e-14) << a;
+    EXPECT_NEAR((r.transpose() * a).trace(), LargestTrace(a), 1e-14 * (1e-300 + 10.0 * a.norm()))
+      << a;
+    // The gradient sees an error of the rotation to first order.
+    const Matrix3d m = r.transpose() * a;
+    worst = std::max(worst, (m - m.transpose()).norm() / (1e-300 + a.norm()));
+  };
+  for (int trial = 0; trial < 2000; ++trial)
+  {
+    const Matrix3d a = RandomMatrix(random);
+    const Matrix3d far = RandomRotation(random);
+    const Vector3d turn = Vector3d{ random(), random(), random() };
+    const Matrix3d flat = a.col(0) * a.row(0) + a.col(1) * a.row(1);
+    const Matrix3d line = a.col(0) * a.row(0);
+    for (const Matrix3d& matrix :
+      { a, flat, line, Matrix3d(flat + 1e-5 * far), Matrix3d(line + 1e-9 * flat) })
+    {
+      for (const double unit : { 1.0, 1e-60, 1e60 })
+      {
+        expectClosest(unit * matrix, far);
+        expectClosest(unit * matrix, Matrix3d::Identity());
+        for (const double size : { 1.0, 0.1, 1e-3, 1e-6, 1e-12, 0.0 })
+        {
+          expectClosest(
+            unit * matrix, ProjectOnRotations(matrix) * RotationFromVector(size * turn));
+        }
+      }
+    }
+  }
+  EXPECT_LT(worst, 2e-15);
+  EXPECT_EQ(ProjectOnRotations(Matrix3d::Zero(), Matrix3d::Identity()), Matrix3d::Identity());
+  // The worst of guesses: by half a turn, where the gradient vanishes too.
+  const Matrix3d halfTurn = Vector3d(-1.0, -1.0, 1.0).asDiagonal();
+  EXPECT_EQ(ProjectOnRotations(Matrix3d::Identity(), halfTurn), Matrix3d::Identity());
+}
+
+TEST(ClosestRotation, DoesNotDriftOffTheRotations)
+{
+  shapes::Random random(10);
+  Matrix3d rotation = Matrix3d::Identity();
+  for (int step = 0; step < 100000; ++step)
+  {
+    const Matrix3d next =
+      rotation * RotationFromVector(0.01 * Vector3d{ random(), random(), random() });
+    rotation = ProjectOnRotations(next * Vector3d(2.0, 1.0, 1e-7).asDiagonal(), rotation);
+  }
+  EXPECT_LT((rotation.transpose() * rotation - Matrix3d::Identity()).norm(), 1e-15);
+}
+
 //------------------------------------------------------------------------------
 TEST(RotationVector, AndBackForAllAngles)
 {
@@ -228,7 +315,33 @@ TEST(RotationVector, MayExceedALap)
   const Vector3d axis = Vector3d(2, -1, 2) / 3.0;
   for (const double angle : { 0.3, 2.0, -1.0 })
   {
-    EXPECT_LT((RotationFromVector((angle + 6 * Pi) * axis) - RotationFromVector(angle * axis)).norm(),
+    EXPECT_LT(
+      (RotationFromVector((angle + 6 * Pi) * axis) - RotationFromVector(angle * axis)).norm(),
       1e-14);
+  }
+}
+
+//------------------------------------------------------------------------------
+TEST(SharedAxis, IsThatOfTheLongestRotationVector)
+{
+  const Vector3d axis = Vector3d(2, -1, 2) / 3.0;
+  Vector3d found;
+  EXPECT_TRUE(cartan::FindSharedAxis({ 0.1 * axis, -7.0 * axis, Vector3d::Zero() }, found));
+  EXPECT_LT((found + axis).norm(), 1e-15);
+  EXPECT_TRUE(cartan::FindSharedAxis({}, found));
+  EXPECT_EQ(found, Vector3d::UnitX());
+  EXPECT_TRUE(cartan::FindSharedAxis({ Vector3d::Zero(), Vector3d::Zero() }, found));
+  EXPECT_EQ(found, Vector3d::UnitX());
+}
+
+TEST(SharedAxis, IsNoneWhereDirectionsDifferByMoreThanAMicroradian)
+{
+  const Vector3d axis = Vector3d::UnitZ();
+  Vector3d found;
+  for (const double angle : { 1e-9, 1.0, 10.0 })
+  {
+    EXPECT_TRUE(cartan::FindSharedAxis({ 20.0 * axis, angle * Vector3d(5e-7, 0, 1) }, found));
+    EXPECT_FALSE(cartan::FindSharedAxis({ 20.0 * axis, angle * Vector3d(5e-6, 0, 1) }, found));
+    EXPECT_FALSE(cartan::FindSharedAxis({ angle * axis, angle * Vector3d::UnitX() }, found));
   }
 }

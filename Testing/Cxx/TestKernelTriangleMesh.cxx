@@ -62,8 +62,7 @@ void ExpectConsistent(const TriangleMesh& mesh)
       // A boundary ring starts at the boundary edge with a triangle on its left
       // and ends at the one without.
       ASSERT_EQ(triangle < 0, mesh.IsBoundary(v) && d == mesh.RingEnd(v) - 1);
-      ASSERT_EQ(
-        mesh.LeftTriangle(twin) < 0, mesh.IsBoundary(v) && d == mesh.RingBegin(v));
+      ASSERT_EQ(mesh.LeftTriangle(twin) < 0, mesh.IsBoundary(v) && d == mesh.RingBegin(v));
       if (triangle < 0)
       {
         ASSERT_EQ(mesh.Next(d), -1);
@@ -73,7 +72,8 @@ void ExpectConsistent(const TriangleMesh& mesh)
       ASSERT_EQ(mesh.Next(d), d + 1 < mesh.RingEnd(v) ? d + 1 : mesh.RingBegin(v));
       ASSERT_EQ(mesh.Opposite(d), mesh.Neighbor(mesh.Next(d)));
       const Eigen::Vector3i corners = mesh.GetTriangles().row(triangle);
-      const int corner = static_cast<int>(std::find(corners.begin(), corners.end(), v) - corners.begin());
+      const int corner =
+        static_cast<int>(std::find(corners.begin(), corners.end(), v) - corners.begin());
       ASSERT_LT(corner, 3);
       ASSERT_EQ(corners[(corner + 1) % 3], mesh.Neighbor(d));
       ASSERT_EQ(corners[(corner + 2) % 3], mesh.Opposite(d));
@@ -190,9 +190,8 @@ TEST(TriangleMesh, VerticesMinusEdgesPlusTrianglesIsTheEulerCharacteristic)
   EXPECT_EQ(EulerCharacteristic(MakeMesh(shapes::Torus(12, 8))), 0);
   EXPECT_EQ(EulerCharacteristic(MakeMesh(shapes::Plane(5))), 1);
   EXPECT_EQ(EulerCharacteristic(MakeMesh(shapes::OpenCylinder(8, 3))), 0);
-  EXPECT_EQ(EulerCharacteristic(
-              MakeMesh(shapes::Union(shapes::Torus(6, 5), shapes::Icosphere(1)))),
-    2);
+  EXPECT_EQ(
+    EulerCharacteristic(MakeMesh(shapes::Union(shapes::Torus(6, 5), shapes::Icosphere(1)))), 2);
 }
 
 TEST(TriangleMesh, RingsRunCounterClockwiseSeenFromOutside)
@@ -345,8 +344,7 @@ TEST(MeshReport, CountsTrianglesOutOfRange)
 
 TEST(MeshReport, CountsRepeatedVertices)
 {
-  const std::vector<Eigen::Vector3i> faces = { { 0, 1, 2 }, { 3, 3, 1 }, { 1, 2, 1 },
-    { 2, 0, 0 } };
+  const std::vector<Eigen::Vector3i> faces = { { 0, 1, 2 }, { 3, 3, 1 }, { 1, 2, 1 }, { 2, 0, 0 } };
   ExpectSample(Check(faces, 4).RepeatedVertex, { 1, 2, 3 });
   ExpectRefused(faces, 4, { "3 triangles (ids 1, 2, 3)", "twice", "remove" });
 }
@@ -411,8 +409,8 @@ TEST(MeshReport, CountsPointsThatAreNotFinite)
   const MeshReport report = TriangleMesh::Check(shape.Positions, shape.Faces);
   ExpectSample(report.NonFinite, { 4, 11 });
   EXPECT_FALSE(report.IsUsable());
-  EXPECT_NE(report.DescribeErrors().find("2 points (ids 4, 11) with a NaN or infinite"),
-    std::string::npos);
+  EXPECT_NE(
+    report.DescribeErrors().find("2 points (ids 4, 11) with a NaN or infinite"), std::string::npos);
 }
 
 TEST(MeshReport, DegenerateTrianglesAndUnusedPointsAreNoObstacle)
@@ -438,8 +436,7 @@ TEST(MeshReport, WhetherATriangleHasAreaDoesNotDependOnTheUnit)
     {
       Points points(3, 3);
       points << 0, 0, 0, 1, 0, 0, 0.3, height, 0;
-      const MeshReport report =
-        TriangleMesh::Check(unit * points, MakeTriangles({ { 0, 1, 2 } }));
+      const MeshReport report = TriangleMesh::Check(unit * points, MakeTriangles({ { 0, 1, 2 } }));
       EXPECT_EQ(report.ZeroArea.GetCount(), isDegenerate ? 1u : 0u) << unit << " " << height;
     }
   }
@@ -518,8 +515,8 @@ TEST(MeshReport, AgreesWithCountingByHandOnRandomTriangles)
           fan.erase(v);
           for (auto other = fans.begin(); other != fans.end();)
           {
-            const bool meets = std::any_of(
-              fan.begin(), fan.end(), [&](int w) { return other->count(w) > 0; });
+            const bool meets =
+              std::any_of(fan.begin(), fan.end(), [&](int w) { return other->count(w) > 0; });
             if (meets)
             {
               fan.insert(other->begin(), other->end());

@@ -80,8 +80,8 @@ struct PatchOptions
 /// The image of the unit square under `map`, oriented by d/du x d/dv. Vertex
 /// (i, j) has the id j * columns + i with columns = CountU + 1, or CountU when
 /// periodic. `map` gets parameters in [0, 1], a little outside when periodic.
-inline Shape Patch(const PatchOptions& options,
-  const std::function<Eigen::Vector3d(double u, double v)>& map)
+inline Shape Patch(
+  const PatchOptions& options, const std::function<Eigen::Vector3d(double u, double v)>& map)
 {
   const int columns = options.CountU + (options.PeriodicU ? 0 : 1);
   const int rows = options.CountV + (options.PeriodicV ? 0 : 1);
@@ -229,13 +229,13 @@ inline Shape UvSphere(int meridians, int parallels, double radius = 1.0)
 inline Shape Icosphere(int level, double radius = 1.0)
 {
   const double g = 0.5 * (1.0 + std::sqrt(5.0));
-  std::vector<Eigen::Vector3d> positions = { { -1, g, 0 }, { 1, g, 0 }, { -1, -g, 0 },
-    { 1, -g, 0 }, { 0, -1, g }, { 0, 1, g }, { 0, -1, -g }, { 0, 1, -g }, { g, 0, -1 },
-    { g, 0, 1 }, { -g, 0, -1 }, { -g, 0, 1 } };
+  std::vector<Eigen::Vector3d> positions = { { -1, g, 0 }, { 1, g, 0 }, { -1, -g, 0 }, { 1, -g, 0 },
+    { 0, -1, g }, { 0, 1, g }, { 0, -1, -g }, { 0, 1, -g }, { g, 0, -1 }, { g, 0, 1 },
+    { -g, 0, -1 }, { -g, 0, 1 } };
   std::vector<Eigen::Vector3i> faces = { { 0, 11, 5 }, { 0, 5, 1 }, { 0, 1, 7 }, { 0, 7, 10 },
-    { 0, 10, 11 }, { 1, 5, 9 }, { 5, 11, 4 }, { 11, 10, 2 }, { 10, 7, 6 }, { 7, 1, 8 },
-    { 3, 9, 4 }, { 3, 4, 2 }, { 3, 2, 6 }, { 3, 6, 8 }, { 3, 8, 9 }, { 4, 9, 5 }, { 2, 4, 11 },
-    { 6, 2, 10 }, { 8, 6, 7 }, { 9, 8, 1 } };
+    { 0, 10, 11 }, { 1, 5, 9 }, { 5, 11, 4 }, { 11, 10, 2 }, { 10, 7, 6 }, { 7, 1, 8 }, { 3, 9, 4 },
+    { 3, 4, 2 }, { 3, 2, 6 }, { 3, 6, 8 }, { 3, 8, 9 }, { 4, 9, 5 }, { 2, 4, 11 }, { 6, 2, 10 },
+    { 8, 6, 7 }, { 9, 8, 1 } };
   for (int step = 0; step < level; ++step)
   {
     std::map<std::pair<int, int>, int> middles;
@@ -291,8 +291,8 @@ inline Shape Bar(int nx, int ny, int nz, const Eigen::Vector3d& size)
   std::vector<Eigen::Vector3i> faces;
   const auto id = [&](const Eigen::Vector3i& lattice)
   {
-    int& known = ids[(static_cast<std::size_t>(lattice[2]) * (ny + 1) + lattice[1]) * (nx + 1) +
-      lattice[0]];
+    int& known =
+      ids[(static_cast<std::size_t>(lattice[2]) * (ny + 1) + lattice[1]) * (nx + 1) + lattice[0]];
     if (known < 0)
     {
       known = static_cast<int>(positions.size());
