@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class pqHandleBoxWidget
+ * @brief the box around a handle in the 3D view, which the surface follows
+ *
+ * ParaView's interactive box, with two differences. The box starts at the
+ * bounds that the function `ReferenceBounds` of the property group gives, the
+ * handle's, instead of at the bounds of the data; the handle moves as the box
+ * does and can be grasped again. And once the filter has been applied, the
+ * surface follows the box while it is dragged, without waiting for Apply.
+ *
+ * In XML: a property group with panel_widget="cartan_handle_box" and the
+ * functions `Position`, `Rotation`, `Scale` and `ReferenceBounds`.
+ */
+#ifndef pqHandleBoxWidget_h
+#define pqHandleBoxWidget_h
+
+#include "pqBoxPropertyWidget.h"
+
+#include <QPointer>
+
+class pqProxy;
+
+class pqHandleBoxWidget : public pqBoxPropertyWidget
+{
+  Q_OBJECT
+  typedef pqBoxPropertyWidget Superclass;
+
+public:
+  pqHandleBoxWidget(vtkSMProxy* motion, vtkSMPropertyGroup* group, QWidget* parent = nullptr);
+  ~pqHandleBoxWidget() override;
+
+private:
+  /// The filter whose handle moves, if it has been applied.
+  pqProxy* appliedFilter() const;
+
+  void startDrag();
+  void follow();
+  void endDrag();
+  void putBack();
+
+  /// A drag is one step to undo.
+  void closeUndoSet();
+  bool IsUndoSetOpen = false;
+
+  /// The filter, if nothing but the box has changed since it was applied.
+  QPointer<pqProxy> Unmodified;
+};
+
+#endif
