@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Configures, builds and runs the benchmarks in build/benchmarks; the output ends
+# with a table of what was asked and what was measured. Arguments are Google
+# Benchmark's, for example --benchmark_filter=104K. Takes about five minutes and
+# means something only on a machine that does nothing else.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+Utilities/bootstrap.sh
+cmake -S . -B build/benchmarks -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCARTAN_BUILD_BENCHMARKS=ON -DCARTAN_BUILD_TESTING=OFF \
+  -DCARTAN_BUILD_PLUGIN=OFF -DCARTAN_WRAP_PYTHON=OFF
+cmake --build build/benchmarks --target CartanBenchmarkDeformation
+build/benchmarks/bin/CartanBenchmarkDeformation "$@"

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Installs what is missing, configures, builds, and bends four scanned surfaces.
+# Pictures, surfaces and a ParaView state appear in build/demo; a table of what
+# was measured ends the output.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+Utilities/bootstrap.sh
+cmake --preset release
+cmake --build --preset release --parallel "$(nproc)" --target CartanPlugin CartanPython
+
+build=$PWD/build
+CARTAN_MESH_DIR=$(sed -n 's/^CARTAN_MESH_DIR:[A-Z]*=//p' "$build/CMakeCache.txt")
+export CARTAN_MESH_DIR=${CARTAN_MESH_DIR:-$build/MeshData}
+export PYTHONPATH=$PWD/Testing/Python
+
+# A screen of its own, whose number the server chooses: xvfb-run guesses one, and
+# another process may be faster. It must not reset when a first window closes.
+mkdir -p "$build/demo"
+number=$build/demo/.screen
+: > "$number"
+Xvfb -displayfd 3 -screen 0 1280x1024x24 -nolisten tcp -noreset 3> "$number" 2> /dev/null &
+screen=$!
+trap 'kill "$screen"; rm -f "$number"' EXIT
+until [ -s "$number" ]; do
+  kill -0 "$screen"
+  sleep 0.1
+done
+DISPLAY=:$(cat "$number")
+export DISPLAY
+
+pvpython Utilities/demo/demo.py "$build"
+# In a process of its own: what a user does who opens the state.
+pvpython Utilities/demo/open_state.py "$build"
