@@ -10,8 +10,7 @@
 
 #include <QPushButton>
 
-pqHandleBoxWidget::pqHandleBoxWidget(
-  vtkSMProxy* motion, vtkSMPropertyGroup* group, QWidget* parent)
+pqHandleBoxWidget::pqHandleBoxWidget(vtkSMProxy* motion, vtkSMPropertyGroup* group, QWidget* parent)
   : Superclass(motion, group, parent, /*hideReferenceBounds=*/true)
 {
   // Otherwise the box would start at the bounds of a data source.
@@ -28,10 +27,9 @@ pqHandleBoxWidget::pqHandleBoxWidget(
   }
 
   // Queued, because the properties learn only after the signals where the box is.
-  QObject::connect(this, &pqHandleBoxWidget::startInteraction, this,
-    &pqHandleBoxWidget::startDrag);
-  QObject::connect(this, &pqHandleBoxWidget::interaction, this, &pqHandleBoxWidget::follow,
-    Qt::QueuedConnection);
+  QObject::connect(this, &pqHandleBoxWidget::startInteraction, this, &pqHandleBoxWidget::startDrag);
+  QObject::connect(
+    this, &pqHandleBoxWidget::interaction, this, &pqHandleBoxWidget::follow, Qt::QueuedConnection);
   QObject::connect(this, &pqHandleBoxWidget::endInteraction, this, &pqHandleBoxWidget::endDrag,
     Qt::QueuedConnection);
 }
@@ -70,8 +68,7 @@ void pqHandleBoxWidget::startDrag()
   BEGIN_UNDO_SET(tr("Move Handle"));
   this->IsUndoSetOpen = true;
   pqProxy* filter = this->appliedFilter();
-  this->Unmodified =
-    filter && filter->modifiedState() == pqProxy::UNMODIFIED ? filter : nullptr;
+  this->Unmodified = filter && filter->modifiedState() == pqProxy::UNMODIFIED ? filter : nullptr;
 }
 
 void pqHandleBoxWidget::follow()

@@ -24,8 +24,7 @@ pqMatrixWidget::pqMatrixWidget(vtkSMProxy* proxy, vtkSMProperty* property, QWidg
     edit->setObjectName(QString("Element%1").arg(i));
     edit->setUseGlobalPrecisionAndNotation(true);
     layout->addWidget(edit, i / columns, i % columns);
-    this->addPropertyLink(
-      edit, "text2", SIGNAL(textChangedAndEditingFinished()), property, i);
+    this->addPropertyLink(edit, "text2", SIGNAL(textChangedAndEditingFinished()), property, i);
     QObject::connect(edit, &pqDoubleLineEdit::textChangedAndEditingFinished, this,
       &pqMatrixWidget::changeFinished);
   }
