@@ -32,3 +32,5 @@ export DISPLAY
 pvpython Utilities/demo/demo.py "$build"
 # In a process of its own: what a user does who opens the state.
 pvpython Utilities/demo/open_state.py "$build"
+# Volumes against the published ones.
+PYTHONPATH=$build/lib/python3.11/site-packages pvpython Utilities/demo/tableone.py

@@ -33,10 +33,63 @@ public:
   }
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& rightHandSide) override
   {
-    return this->Cholesky.solve(rightHandSide);
+    Eigen::MatrixXd solution(rightHandSide.rows(), rightHandSide.cols());
+    Eigen::Index column = 0;
+    for (; column + 3 <= rightHandSide.cols(); column += 3)
+    {
+      this->SolveColumns<3>(rightHandSide, column, solution);
+    }
+    for (; column < rightHandSide.cols(); ++column)
+    {
+      this->SolveColumns<1>(rightHandSide, column, solution);
+    }
+    return solution;
   }
 
 private:
+  /// Forward and backward substitution for Count right-hand sides side by side:
+  /// the factor, which no cache holds, passes by once instead of Count times.
+  template <int Count>
+  void SolveColumns(
+    const Eigen::MatrixXd& rightHandSide, Eigen::Index column, Eigen::MatrixXd& solution) const
+  {
+    using Values =
+      Eigen::Matrix<double, Eigen::Dynamic, Count, Count == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+    const SparseMatrix& lower = this->Cholesky.matrixL().nestedExpression();
+    const auto& permutation = this->Cholesky.permutationP().indices();
+    const int size = static_cast<int>(lower.cols());
+    Values values(size, Count);
+    for (int i = 0; i < size; ++i)
+    {
+      values.row(permutation[i]) = rightHandSide.template block<1, Count>(i, column);
+    }
+    const int* begin = lower.outerIndexPtr();
+    const int* row = lower.innerIndexPtr();
+    const double* entry = lower.valuePtr();
+    for (int j = 0; j < size; ++j)
+    {
+      const Eigen::Matrix<double, 1, Count> value = values.row(j) / entry[begin[j]];
+      values.row(j) = value;
+      for (int k = begin[j] + 1; k < begin[j + 1]; ++k)
+      {
+        values.row(row[k]) -= entry[k] * value;
+      }
+    }
+    for (int j = size - 1; j >= 0; --j)
+    {
+      Eigen::Matrix<double, 1, Count> value = values.row(j);
+      for (int k = begin[j] + 1; k < begin[j + 1]; ++k)
+      {
+        value -= entry[k] * values.row(row[k]);
+      }
+      values.row(j) = value / entry[begin[j]];
+    }
+    for (int i = 0; i < size; ++i)
+    {
+      solution.template block<1, Count>(i, column) = values.row(permutation[i]);
+    }
+  }
+
   Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> Cholesky;
 };
 

@@ -24,6 +24,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSMPTools.h"
+#include "vtkShapePreservingDeformation.h"
 
 #include <benchmark/benchmark.h>
 
@@ -31,6 +32,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -371,6 +373,50 @@ void FilterMotion(benchmark::State& state, const Case& which, FrameProjection pr
   state.counters["factorizations"] = filter->GetNumberOfFactorizations();
 }
 
+/// What the preservation of volume adds to a shape-preserving motion.
+struct Preservation
+{
+  const char* Name;
+  int Correction;
+  bool Close;
+};
+
+const std::array<Preservation, 4> Preservations = { {
+  { "shape", vtkFrameDeformation::NO_CORRECTION, false },
+  { "shape, neutral offset", vtkFrameDeformation::NEUTRAL_OFFSET, false },
+  { "shape, neutral offset and close", vtkFrameDeformation::NEUTRAL_OFFSET, true },
+  { "shape, frame scaling", vtkFrameDeformation::FRAME_SCALING, false },
+} };
+
+/// A motion about one axis through the shape-preserving filter; the depth of the
+/// body is measured before.
+void ShapeMotion(benchmark::State& state, const Case& which, const Preservation& preservation)
+{
+  vtkSMPTools::SetBackend(which.IsThreaded ? "STDThread" : "Sequential");
+  static std::optional<Case> cached;
+  static vtkSmartPointer<vtkShapePreservingDeformation> filter;
+  static vtkSmartPointer<vtkHandleMotion> motion;
+  if (!cached || !(*cached == which))
+  {
+    filter = vtkSmartPointer<vtkShapePreservingDeformation>::New();
+    motion = vtkSmartPointer<vtkHandleMotion>::New();
+    motion->SetAxis(1.0, 0.0, 0.0);
+    filter->SetInputData(MarkedSurface(CachedMesh(which.Subdivisions), which.IsEnds));
+    filter->SetHandleMotion(2, motion);
+    cached = which;
+  }
+  filter->SetVolumeCorrection(preservation.Correction);
+  filter->SetCloseVolume(preservation.Close);
+  motion->SetAngle(10.0);
+  filter->Update();
+  for (auto _ : state)
+  {
+    motion->SetAngle(NextMotion().RotationVector[0] / Degrees);
+    filter->Update();
+  }
+  state.counters["factorizations"] = filter->GetNumberOfFactorizations();
+}
+
 void PeerIteration(benchmark::State& state, const Case& which)
 {
   static std::optional<Case> cached;
@@ -591,6 +637,29 @@ void PrintTable(const Collector& results, const std::vector<Case>& cases)
         PrintRow("  ratio to CGAL's iteration", text, "%8.4f   ", ratio, Verdict(ratio <= asked));
       }
     }
+    const std::string shape = std::string(Preservations[0].Name) + "/" + which.Name();
+    for (const Preservation& preservation : Preservations)
+    {
+      const std::string motion = std::string(preservation.Name) + "/" + which.Name();
+      if (!results.Has(motion))
+      {
+        continue;
+      }
+      const double seconds = results.Seconds(motion, which.IsThreaded);
+      PrintRow(std::string(preservation.Name) + " motion, filter", "", "%8.2f ms", 1e3 * seconds,
+        "");
+      if (motion == shape && isTarget && results.Has(peer))
+      {
+        const double ratio = seconds / results.Seconds(peer, which.IsThreaded);
+        PrintRow("  ratio to CGAL's iteration", "<= 0.33", "%8.4f   ", ratio,
+          Verdict(ratio <= 1.0 / 3.0));
+      }
+      else if (motion != shape && results.Has(shape))
+      {
+        const double ratio = seconds / results.Seconds(shape, which.IsThreaded);
+        PrintRow("  ratio to the motion without", "<= 4", "%8.4f   ", ratio, Verdict(ratio <= 4.0));
+      }
+    }
     for (const char* level : { "kernel", "filter" })
     {
       const std::string memory = std::string("memory/") + level + "/" + which.Surface() + "/" +
@@ -662,6 +731,19 @@ int main(int argc, char** argv)
         ->Unit(benchmark::kMillisecond)
         ->MinTime(0.3)
         ->Repetitions(repetitions);
+    }
+    for (const Preservation& preservation : Preservations)
+    {
+      if (!isLarge && which.Backend == backends.front())
+      {
+        RegisterBenchmark((std::string(preservation.Name) + "/" + name).c_str(),
+          [=](auto& state) { ShapeMotion(state, which, preservation); })
+          ->UseRealTime()
+          ->MeasureProcessCPUTime()
+          ->Unit(benchmark::kMillisecond)
+          ->MinTime(0.3)
+          ->Repetitions(repetitions);
+      }
     }
     if (!isLarge && which.IsThreaded && which.Backend == backends.front())
     {
