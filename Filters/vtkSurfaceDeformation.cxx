@@ -2,6 +2,7 @@
 #include "vtkSurfaceDeformation.h"
 
 #include "Kernel/ConstrainedSolver.h"
+#include "Kernel/HandleCurve.h"
 #include "Kernel/HandleProblem.h"
 #include "Kernel/Rotation.h"
 #include "KernelBridge.h"
@@ -401,6 +402,7 @@ void vtkSurfaceDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RotationVectorArrayName: " << this->RotationVectorArrayName << "\n";
   os << indent << "TransformArrayName: " << this->TransformArrayName << "\n";
   os << indent << "ConstraintWeightArrayName: " << this->ConstraintWeightArrayName << "\n";
+  os << indent << "ScaleConstraintWeights: " << this->ScaleConstraintWeights << "\n";
   os << indent << "ActiveHandle: " << this->ActiveHandle << "\n";
   os << indent << "ConstrainHandlePositions: " << this->ConstrainHandlePositions << "\n";
   os << indent << "LaplacianWeights: " << this->LaplacianWeights << "\n";
@@ -672,6 +674,13 @@ int vtkSurfaceDeformation::RequestData(
       {
         problem.SoftWeights =
           ReadSoftWeights(input, this->ConstraintWeightArrayName, problem.Handle);
+        if (this->ScaleConstraintWeights)
+        {
+          const Eigen::ArrayXd shares =
+            cartan::HandleCurveShares(surface->Mesh, surface->Positions, problem.Handle);
+          const Eigen::ArrayXd weights = problem.SoftWeights;
+          problem.SoftWeights = weights.isInf().select(weights, weights * shares.sqrt());
+        }
       }
       static_assert(static_cast<int>(cartan::LaplacianWeights::Uniform) == UNIFORM &&
           static_cast<int>(cartan::LaplacianWeights::Cotangent) == COTANGENT &&

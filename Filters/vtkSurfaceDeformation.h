@@ -150,11 +150,25 @@ public:
    * A point array of soft constraint weights w >= 0, read at handle points:
    * infinity holds exactly, 0 does not hold, between them w^2 times the squared
    * distance from the target joins the sum of squared residuals over both
-   * directions of each edge. Not scaled by edge lengths. Empty (the default):
-   * all handle points are held exactly.
+   * directions of each edge. Empty (the default): all handle points are held
+   * exactly.
    */
   void SetConstraintWeightArrayName(const std::string& name);
   std::string GetConstraintWeightArrayName() const { return this->ConstraintWeightArrayName; }
+  ///@}
+
+  ///@{
+  /**
+   * On: a finite weight w adds w^2 times the *mean* squared distance along the
+   * handle's curve (the handle itself where it is a line of points, its border
+   * where it is a region, whose inside then follows freely), so that with
+   * cotangent LaplacianWeights it means the same on a coarse and on a fine mesh.
+   * Off: it adds that of every point, as in Lipman et al., Volume and Shape
+   * Preservation via Moving Frame Manipulation, 2007. Default: off.
+   */
+  vtkSetMacro(ScaleConstraintWeights, bool);
+  vtkGetMacro(ScaleConstraintWeights, bool);
+  vtkBooleanMacro(ScaleConstraintWeights, bool);
   ///@}
 
   enum LaplacianWeightsType
@@ -307,6 +321,7 @@ private:
   int ActiveHandle = 1;
   double ActiveHandleBounds[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   bool ConstrainHandlePositions = true;
+  bool ScaleConstraintWeights = false;
   int LaplacianWeights = COTANGENT;
   int Solver = AUTOMATIC_SOLVER;
   bool GenerateFrameChange = false;

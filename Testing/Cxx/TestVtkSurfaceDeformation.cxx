@@ -350,6 +350,7 @@ TEST(SurfaceDeformation, EveryParameterMakesItRunAgain)
         filter->SetTransformArrayName("Matrix");
       } },
     { "ConstraintWeightArrayName", [=]() { filter->SetConstraintWeightArrayName("Weight"); } },
+    { "ScaleConstraintWeights", [=]() { filter->ScaleConstraintWeightsOn(); } },
     { "LaplacianWeights", [=]() { filter->SetLaplacianWeightsToMeanValue(); } },
     { "Solver", [=]() { filter->SetSolverToEigen(); } },
     { "GenerateFrameChange", [=]() { filter->GenerateFrameChangeOn(); } },
@@ -673,6 +674,70 @@ TEST(SurfaceDeformation, IgnoresWeightsOfFreePoints)
     fixture.ExpectSuccess();
   }
   EXPECT_EQ(fixture.Filter->GetNumberOfFactorizations(), 1);
+}
+
+TEST(SurfaceDeformation, ScaledWeightsMeanTheSameOnEveryMesh)
+{
+  // A unit square, one side pinned, the opposite one pulled by t with weight w:
+  // 2 integral |grad u|^2 + w^2 mean |u - t|^2 along the side is least for a u
+  // that grows evenly to t k / (1 + k), k = w^2 / 2, which every mesh can
+  // represent.
+  const Eigen::Vector3d pull(0.1, 0.2, 0.3);
+  for (const double weight : { 0.5, 2.0 })
+  {
+    for (const double unit : { 1e-3, 1.0, 1e3 })
+    {
+      for (const int count : { 3, 10, 40 })
+      {
+        Shape square = shapes::Plane(count, 1.0, 0.25);
+        square.Positions *= unit;
+        Fixture fixture;
+        fixture.Good = MakePolyData(square);
+        vtktest::AddHandles(fixture.Good, [unit](const Eigen::Vector3d& x)
+          { return x[1] < -0.499 * unit ? 1 : x[1] > 0.499 * unit ? 2 : 0; });
+        vtkDataArray* handles = fixture.Good->GetPointData()->GetArray("Handle");
+        vtktest::AddArray(fixture.Good, "Weight", 1, [&](vtkIdType v, double* value)
+          { *value = handles->GetTuple1(v) == 2 ? weight : Infinity; });
+        fixture.Filter->SetInputData(fixture.Good);
+        fixture.Motion->SetAngle(0);
+        fixture.Motion->SetTranslation(unit * pull[0], unit * pull[1], unit * pull[2]);
+        fixture.Filter->SetConstraintWeightArrayName("Weight");
+        fixture.Filter->ScaleConstraintWeightsOn();
+        fixture.ExpectSuccess();
+        const double k = 0.5 * weight * weight;
+        const Eigen::MatrixXd expected = square.Positions +
+          k / (1.0 + k) * (square.Positions.col(1).array() + 0.5 * unit).matrix() *
+            pull.transpose();
+        EXPECT_LT((vtktest::PointsOf(fixture.Filter->GetOutput()) - expected).norm(), 1e-9 * unit)
+          << "weight " << weight << ", unit " << unit << ", mesh " << count;
+      }
+    }
+  }
+}
+
+TEST(SurfaceDeformation, ScaledWeightsHoldRegionsByTheirBorderAndSinglePoints)
+{
+  // Handle 2 is a region, 3 a single point. Both turn alike, and with them all
+  // else, their insides included: nothing is left unheld.
+  Shape plane = shapes::Plane(12, 1.0, 0.2);
+  Fixture fixture;
+  fixture.Good = MakePolyData(plane);
+  vtktest::AddHandles(fixture.Good, [&](const Eigen::Vector3d& x)
+    { return x[1] > 0.2 ? 2 : x == plane.Positions.row(20).transpose() ? 3 : 0; });
+  vtktest::AddArray(
+    fixture.Good, "Weight", 1, [&](vtkIdType, double* value) { *value = 0.3; });
+  fixture.Filter->SetInputData(fixture.Good);
+  fixture.Filter->SetHandleMotion(3, fixture.Motion);
+  fixture.Motion->SetCenter(0, 0, 0);
+  fixture.Filter->SetConstraintWeightArrayName("Weight");
+  fixture.Filter->ScaleConstraintWeightsOn();
+  fixture.ExpectSuccess();
+  const Eigen::Matrix3d turn =
+    Eigen::AngleAxisd(40.0 * shapes::Pi / 180.0, Eigen::Vector3d::UnitX()).matrix();
+  EXPECT_LT((vtktest::PointsOf(fixture.Filter->GetOutput()) - plane.Positions * turn.transpose())
+              .cwiseAbs()
+              .maxCoeff(),
+    1e-10);
 }
 
 TEST(SurfaceDeformation, WarnsOnceOfDegenerateTrianglesAndGoesOn)
