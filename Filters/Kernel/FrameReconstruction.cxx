@@ -4,6 +4,7 @@
 #include "Laplacian.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace cartan
 {
@@ -86,24 +87,124 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
   return frames;
 }
 
-Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
-  const std::vector<char>& isFixed, Points positions, ConstrainedSolver& solver,
+Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
+  const std::vector<char>& isFixed, Matrices start, const ConstrainedSolver& laplacian, int* steps,
+  const ExecutionContext& context)
+{
+  constexpr double tolerance = 1e-10;
+  constexpr int maximumSteps = 1000;
+  const std::vector<char> isGiven = FixUnused(mesh, isFixed);
+  const int numberOfVertices = mesh.NumberOfVertices();
+  const SparseMatrix matrix = FrameMatrix(mesh, transitions);
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  const auto clearGiven = [&](Columns& columns)
+  {
+    for (int v = 0; v < numberOfVertices; ++v)
+    {
+      if (isGiven[v])
+      {
+        columns.middleRows<3>(3 * v).setZero();
+      }
+    }
+  };
+  // The unknown X_i = F_i^T is S_i^T Y_i in the gauge of the start's frames S_i,
+  // where the matrix is close to 2 L on each of the nine entries of Y.
+  Field turned(numberOfVertices, 9);
+  Field solved = Field::Zero(numberOfVertices, 9);
+  const auto precondition = [&](const Columns& residual)
+  {
+    for (int v = 0; v < numberOfVertices; ++v)
+    {
+      Eigen::Map<Eigen::Matrix3d>(turned.data() + 9 * static_cast<Eigen::Index>(v)) =
+        MatrixAt(start, v) * residual.middleRows<3>(3 * v);
+    }
+    laplacian.Solve(turned, solved);
+    Columns result(3 * numberOfVertices, 3);
+    for (int v = 0; v < numberOfVertices; ++v)
+    {
+      result.middleRows<3>(3 * v) = 0.5 * MatrixAt(start, v).transpose() *
+        Eigen::Map<const Eigen::Matrix3d>(solved.data() + 9 * static_cast<Eigen::Index>(v));
+    }
+    clearGiven(result);
+    return result;
+  };
+
+  Columns solution(3 * numberOfVertices, 3);
+  for (int v = 0; v < numberOfVertices; ++v)
+  {
+    solution.middleRows<3>(3 * v) = MatrixAt(start, v).transpose();
+  }
+  Columns residual = -(matrix * solution);
+  clearGiven(residual);
+  Columns preconditioned = precondition(residual);
+  Columns direction = preconditioned;
+  double product = residual.cwiseProduct(preconditioned).sum();
+  // Transitions that fit the start exactly leave rounding only.
+  const double goal = std::max(tolerance * tolerance * product,
+    std::numeric_limits<double>::epsilon() * std::numeric_limits<double>::epsilon() *
+      solution.squaredNorm());
+  int step = 0;
+  while (product > goal)
+  {
+    if (++step > maximumSteps)
+    {
+      throw Error(ErrorCode::SingularSystem,
+        "The frames of the interpolated surface were not found after " +
+          std::to_string(maximumSteps) + " steps of conjugate gradients: use another solver.");
+    }
+    Columns image = matrix * direction;
+    clearGiven(image);
+    const double length = product / direction.cwiseProduct(image).sum();
+    solution += length * direction;
+    residual -= length * image;
+    preconditioned = precondition(residual);
+    const double next = residual.cwiseProduct(preconditioned).sum();
+    direction = preconditioned + next / product * direction;
+    product = next;
+    context.Report(static_cast<double>(step) / maximumSteps);
+  }
+  if (steps)
+  {
+    *steps = step;
+  }
+  for (int v = 0; v < numberOfVertices; ++v)
+  {
+    if (!isGiven[v])
+    {
+      MatrixAt(start, v) = solution.middleRows<3>(3 * v).transpose();
+    }
+  }
+  return start;
+}
+
+Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
   const ExecutionContext& context)
 {
   // The normal equations of Eq. 5 over both directions of each edge are
   // 2 L x = sum_j (F_j c_ji - F_i c_ij) with the graph Laplacian L.
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges());
   Field rightHandSide = Field::Zero(mesh.NumberOfVertices(), 3);
-  for (int i = 0; i < mesh.NumberOfVertices(); ++i)
-  {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (int d = mesh.RingBegin(i); d < mesh.RingEnd(i); ++d)
+  context.For(mesh.NumberOfVertices(),
+    [&](int begin, int end)
     {
-      sum += MatrixAt(frames, mesh.Neighbor(d)) * ring.row(mesh.Twin(d)).transpose() -
-        MatrixAt(frames, i) * ring.row(d).transpose();
-    }
-    rightHandSide.row(i) = 0.5 * sum;
-  }
+      for (int i = begin; i < end; ++i)
+      {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (int d = mesh.RingBegin(i); d < mesh.RingEnd(i); ++d)
+        {
+          sum += MatrixAt(frames, mesh.Neighbor(d)) * ring.row(mesh.Twin(d)).transpose() -
+            MatrixAt(frames, i) * ring.row(d).transpose();
+        }
+        rightHandSide.row(i) = 0.5 * sum;
+      }
+    });
+  return rightHandSide;
+}
+
+Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
+  const std::vector<char>& isFixed, Points positions, ConstrainedSolver& solver,
+  const ExecutionContext& context)
+{
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges());
   const std::vector<char> isGiven = FixUnused(mesh, isFixed);
   solver.Factorize(Laplacian(mesh, ones), isGiven, {}, {}, context);
 
@@ -125,7 +226,7 @@ Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Po
       solution.row(v) = positions.row(v) - positions.row(references[mesh.Component(v)]);
     }
   }
-  solver.Solve(rightHandSide, solution);
+  solver.Solve(PositionRightHandSide(mesh, frames, ring, context), solution);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     if (!isGiven[v])

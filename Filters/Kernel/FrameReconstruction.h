@@ -23,6 +23,23 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices frames, ConstrainedSolver& solver,
   const ExecutionContext& context = {});
 
+/// The same frames by conjugate gradients, without a factorization of the 3 #V
+/// matrix. `start` must be rotations near the result: seen from them the matrix
+/// is nearly three graph Laplacians, whose factors precondition it, and a
+/// handful of steps suffice; far from it hundreds are needed. `laplacian` is
+/// factorized with the vertices of `isFixed` and the unused ones fixed; the
+/// frames there are kept. Stops when the preconditioned residual is 1e-10 of
+/// that of the start. `steps`, if given, receives the number of steps; throws
+/// Error(SingularSystem) after 1000.
+Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
+  const std::vector<char>& isFixed, Matrices start, const ConstrainedSolver& laplacian,
+  int* steps = nullptr, const ExecutionContext& context = {});
+
+/// b of the normal equations L x = b that SolvePositions solves, with the graph
+/// Laplacian L: #V x 3.
+Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
+  const ExecutionContext& context = {});
+
 /// The positions that fit x_j - x_i = F_i c_ij (Eq. 5) best over all directed
 /// edges, with those given where `isFixed` is non-zero: #V x 3. `ring` are the
 /// edges in the frames of their origins (RingCoordinates). Throws

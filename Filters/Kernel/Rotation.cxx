@@ -175,4 +175,14 @@ Eigen::Vector3d VectorFromRotation(const Eigen::Matrix3d& rotation)
   const Eigen::AngleAxisd angleAxis(quaternion);
   return angleAxis.angle() * angleAxis.axis();
 }
+
+Eigen::Vector3d VectorFromRotation(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& guess)
+{
+  constexpr double fullTurn = 2.0 * 3.14159265358979323846;
+  const Eigen::Vector3d vector = VectorFromRotation(rotation);
+  const double angle = vector.norm();
+  // No turn has any axis.
+  const Eigen::Vector3d axis = angle > 0.0 ? Eigen::Vector3d(vector / angle) : guess.normalized();
+  return (angle + fullTurn * std::round((guess.dot(axis) - angle) / fullTurn)) * axis;
+}
 }

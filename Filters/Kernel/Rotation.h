@@ -31,4 +31,8 @@ bool FindSharedAxis(const std::vector<Eigen::Vector3d>& rotationVectors, Eigen::
 /// Axis times angle in radians, the angle in [0, pi]. Accurate near 0 and pi;
 /// at pi one of the two opposite axes.
 Eigen::Vector3d VectorFromRotation(const Eigen::Matrix3d& rotation);
+
+/// Of the rotation vectors that mean this rotation, whole turns about its axis
+/// apart, the one nearest to `guess`: of any length.
+Eigen::Vector3d VectorFromRotation(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& guess);
 }

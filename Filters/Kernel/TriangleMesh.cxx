@@ -366,4 +366,17 @@ TriangleMesh::TriangleMesh(int numberOfVertices, Triangles triangles)
     ++this->ComponentCount;
   }
 }
+
+std::vector<char> TriangleMesh::Grounded() const
+{
+  std::vector<char> isGrounded(this->Components.size());
+  int next = 0;
+  for (std::size_t v = 0; v < isGrounded.size(); ++v)
+  {
+    const bool isFirst = this->Components[v] == next;
+    next += isFirst;
+    isGrounded[v] = isFirst || this->Components[v] < 0;
+  }
+  return isGrounded;
+}
 }

@@ -73,6 +73,10 @@ public:
   /// -1 for unused vertices.
   int Component(int v) const { return this->Components[v]; }
 
+  /// The vertices to fix so that nothing floats: non-zero at the first vertex of
+  /// each component and at unused ones. #V.
+  std::vector<char> Grounded() const;
+
   /// Where the directed edge d starts and ends.
   int Origin(int d) const { return this->Neighbors[this->Twins[d]]; }
   int Neighbor(int d) const { return this->Neighbors[d]; }
