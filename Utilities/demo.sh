@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing, configures, builds, and bends four scanned surfaces.
-# Pictures, surfaces and a ParaView state appear in build/demo; a table of what
-# was measured ends the output.
+# Installs what is missing, configures, builds, bends four scanned surfaces, and makes
+# the gallery. Pictures, surfaces and a ParaView state appear in build/demo; what was
+# measured is printed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -32,5 +32,7 @@ export DISPLAY
 pvpython Utilities/demo/demo.py "$build"
 # In a process of its own: what a user does who opens the state.
 pvpython Utilities/demo/open_state.py "$build"
-# Volumes against the published ones.
-PYTHONPATH=$build/lib/python3.11/site-packages pvpython Utilities/demo/tableone.py
+# Volumes against the published ones, and figures like the published ones.
+export PYTHONPATH=$build/lib/python3.11/site-packages
+pvpython Utilities/demo/tableone.py
+pvpython Utilities/demo/gallery.py "$build"

@@ -14,17 +14,12 @@ from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from cartan_testing import read_off
-from pictures import write_overview
+from pictures import DIFFERENCE, FREE, HANDLE_COLORS, PINNED, camera_for, write_overview
 from plugin import load_plugin
 from poses import POSES, Sphere
 
-# Free points in the colour of bone, pinned ones dark; then a colour per handle.
-FREE, PINNED = (0.88, 0.85, 0.79), (0.30, 0.33, 0.38)
-HANDLE_COLORS = [(0.90, 0.38, 0.22), (0.17, 0.49, 0.72), (0.93, 0.70, 0.13), (0.30, 0.62, 0.35),
-                 (0.58, 0.40, 0.70), (0.10, 0.63, 0.65), (0.85, 0.45, 0.62)]
-# From nothing to much, and from less to more.
+# From nothing to much.
 AMOUNT = [FREE, (0.95, 0.66, 0.28), (0.80, 0.24, 0.26), (0.35, 0.05, 0.32)]
-DIFFERENCE = [(0.05, 0.20, 0.50), (0.35, 0.65, 0.85), FREE, (0.92, 0.48, 0.30), (0.55, 0.03, 0.12)]
 PANEL = (640, 720)
 NUMBER_OF_MOTIONS = 9
 
@@ -100,25 +95,6 @@ def time_motions(deformed):
     return setup, statistics.median(motions)
 
 
-def camera_for(pose, surfaces):
-    """Focal point and parallel scale that show all surfaces."""
-    back = numpy.array(pose.view_from, dtype=float)
-    back /= numpy.linalg.norm(back)
-    right = numpy.cross(pose.view_up, back)
-    right /= numpy.linalg.norm(right)
-    up = numpy.cross(back, right)
-    points = numpy.concatenate([numpy.asarray(surface.Points) for surface in surfaces])
-    seen = points @ numpy.array([right, up, back]).T
-    low, high = seen.min(axis=0), seen.max(axis=0)
-    # The lowest 17 % of a panel belong to the colour bar, the highest 8 % to its title.
-    scale = max((high[1] - low[1]) / 0.72, (high[0] - low[0]) / 0.94 * PANEL[1] / PANEL[0]) / 2
-    middle = (low + high) / 2
-    middle[1] -= 0.09 * scale
-    focal = middle @ numpy.array([right, up, back])
-    distance = 4 * scale + (high[2] - low[2])
-    return focal, focal + distance * back, up, scale
-
-
 def nice(value):
     """The value rounded to one or two digits, for the end of a colour bar."""
     digit = 10.0 ** math.floor(math.log10(value))
@@ -180,7 +156,9 @@ def color_by_field(shown, view, array, title, colors, low, high):
 def draw(pose, marked, bent, measured, folder):
     """A layout of four panels, kept in the state, and its picture."""
     before, after = (WrapDataObject(servermanager.Fetch(s)) for s in (marked, measured))
-    camera = camera_for(pose, (before, after))
+    points = numpy.concatenate([numpy.asarray(surface.Points) for surface in (before, after)])
+    # The lowest 17 % of a panel belong to the colour bar, the highest 8 % to its title.
+    camera = camera_for(pose.view_from, pose.view_up, points, PANEL, 0.17, 0.08)
     # The largest two percent would leave everything else without colour.
     error = nice(numpy.percentile(abs(after.PointData["MeanCurvatureError"]), 98))
     change = nice(after.PointData["FrameChange"].max())

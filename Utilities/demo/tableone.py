@@ -35,11 +35,9 @@ CORRECTIONS = {
 }
 
 
-def mark_ends(surface, axis, pinned, moving):
-    """Marks what lies below the part `pinned` of the extent along an axis as
-    handle 1, and what lies above the part `moving` as handle 2."""
-    heights = vtk_to_numpy(surface.GetPoints().GetData())[:, axis].astype(float)
-    fraction = (heights - heights.min()) / (heights.max() - heights.min())
+def mark_parts(surface, fraction, pinned, moving):
+    """Marks points whose fraction is at most `pinned` as handle 1, and those whose
+    fraction is at least `moving` as handle 2."""
     # The bar's points lie on the limits themselves.
     handles = numpy.where(fraction <= pinned + 1e-9, 1, 0)
     handles[fraction >= moving - 1e-9] = 2
@@ -47,6 +45,14 @@ def mark_ends(surface, axis, pinned, moving):
     array.SetName("Handle")
     surface.GetPointData().AddArray(array)
     return surface
+
+
+def mark_ends(surface, axis, pinned, moving):
+    """Marks what lies below the part `pinned` of the extent along an axis as
+    handle 1, and what lies above the part `moving` as handle 2."""
+    heights = vtk_to_numpy(surface.GetPoints().GetData())[:, axis].astype(float)
+    fraction = (heights - heights.min()) / (heights.max() - heights.min())
+    return mark_parts(surface, fraction, pinned, moving)
 
 
 def marked_bar():
