@@ -1,8 +1,12 @@
 #!/usr/bin/env bash
 # Installs what is missing, configures, builds, bends four scanned surfaces, and makes
 # the gallery. Pictures, surfaces and a ParaView state appear in build/demo; what was
-# measured is printed.
+# measured is printed. With --compare, it puts all methods side by side instead.
 set -euo pipefail
+if [ $# -gt 1 ] || [ "${1---compare}" != --compare ]; then
+  echo "usage: $0 [--compare]" >&2
+  exit 2
+fi
 cd "$(dirname "$0")/.."
 
 Utilities/bootstrap.sh
@@ -29,10 +33,15 @@ done
 DISPLAY=:$(cat "$number")
 export DISPLAY
 
+python_module=$build/lib/python3.11/site-packages
+if [ "${1-}" = --compare ]; then
+  PYTHONPATH=$python_module pvpython Utilities/demo/compare.py "$build"
+  exit
+fi
 pvpython Utilities/demo/demo.py "$build"
 # In a process of its own: what a user does who opens the state.
 pvpython Utilities/demo/open_state.py "$build"
 # Volumes against the published ones, and figures like the published ones.
-export PYTHONPATH=$build/lib/python3.11/site-packages
+export PYTHONPATH=$python_module
 pvpython Utilities/demo/tableone.py
 pvpython Utilities/demo/gallery.py "$build"

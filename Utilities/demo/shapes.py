@@ -5,6 +5,7 @@ import sys
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersModeling import vtkLoopSubdivisionFilter
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
                                 "..", "..", "Testing", "Python"))
@@ -81,3 +82,40 @@ def studded_bar(length, per_unit):
         height = numpy.where(side & whole, 0.2 * dome(distance, 0.38), 0)
         points[:, axis] += numpy.sign(points[:, axis]) * height
     return bar, parts
+
+
+def cylinder(length, rings, sides):
+    """A closed cylinder of diameter 1 along x, from 0 to the length, and the part of
+    its length at which each point is."""
+    part = numpy.linspace(0, 1, rings)
+    centers = length * part[:, None] * (1.0, 0.0, 0.0)
+    tangents = numpy.broadcast_to((1.0, 0.0, 0.0), centers.shape)
+    surface = tube(centers, tangents, numpy.full(rings, 0.5), sides)
+    return surface, numpy.concatenate([numpy.repeat(part, sides), [0, 1]])
+
+
+def bumpy_plane(count):
+    """A square of side 4 around the origin with count x count points and domes on it,
+    and how far each point is from its middle: 0 there, 1 at the border."""
+    side = numpy.linspace(-2, 2, count)
+    x, y = (grid.ravel() for grid in numpy.meshgrid(side, side))
+    # A dome around every odd tenth.
+    nearest = [0.2 * (2 * numpy.floor(grid / 0.4) + 1) for grid in (x, y)]
+    height = 0.12 * dome(numpy.hypot(x - nearest[0], y - nearest[1]), 0.18)
+    first = (numpy.arange(count - 1)[:, None] * count + numpy.arange(count - 1)).ravel()
+    right, above, across = first + 1, first + count, first + count + 1
+    triangles = numpy.concatenate([numpy.stack([first, right, across], -1),
+                                   numpy.stack([first, across, above], -1)])
+    surface = cartan_testing.surface(numpy.stack([x, y, height], -1), triangles)
+    return surface, numpy.maximum(abs(x), abs(y)) / 2
+
+
+def cactus():
+    """The scanned cactus, its triangles divided in 64 by Loop's scheme, and the part
+    of its height at which each point is."""
+    refine = vtkLoopSubdivisionFilter()
+    refine.SetInputData(cartan_testing.read_off("cactus"))
+    refine.SetNumberOfSubdivisions(3)
+    refine.Update()
+    height = vtk_to_numpy(refine.GetOutput().GetPoints().GetData())[:, 1]
+    return refine.GetOutput(), (height - height.min()) / (height.max() - height.min())
