@@ -4,7 +4,7 @@ Variational Surface Deformation Methods (2008): pictures in one sheet, and what 
 measured. Run by Utilities/demo.sh --compare in pvpython; the argument is the build
 folder. Its folder demo gets comparison.png, comparison.csv and comparison.md.
 
-Sizes, shapes and handles are this script's, those of the survey are not published."""
+Shapes, handles and sizes are not the survey's."""
 import csv
 import math
 import os
@@ -199,7 +199,7 @@ FORMATS = ("{:.3f}", "{:.2f}", "{:+.3f}", "{:+.3f}", "{:.3f}", "{:.2f}", "{:.1f}
 
 
 def text(form, value):
-    return "" if math.isnan(value) else form.format(value).replace("-", "\u2212")
+    return "" if math.isnan(value) else form.format(value)
 
 
 def write_tables(cases, table, folder):
