@@ -206,7 +206,7 @@ def write_tables(cases, table, folder):
     """comparison.csv with seconds, comparison.md with ratios to those of UNIT."""
     with open(os.path.join(folder, "comparison.csv"), "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(("case", "method", *COLUMNS))
+        writer.writerow(("case", "method", *COLUMNS[:-2], "set-up, s", "motion, s"))
         for case, rows in zip(cases, table):
             for row in rows:
                 numbers = (*row.figures, row.setup, row.motion)
@@ -232,8 +232,8 @@ def write_tables(cases, table, folder):
 
 
 def pictures_of(case, rows):
-    """A picture per result, all seen by the camera that shows what most do: some fold
-    out of any picture."""
+    """A picture per result, all seen by the camera that shows what most do: what falls
+    apart may leave the picture."""
     size = (WIDTH, HEIGHT)
     shown = case.exact and moved(case) or rows[1].surface
     points = numpy.concatenate([points_of(case.rest), points_of(shown)])
