@@ -36,17 +36,17 @@ KeyInterpolation::KeyInterpolation(std::vector<double> parameters, Field values)
   , Values(std::move(values))
 {
   const int keys = static_cast<int>(this->Parameters.size());
-  if (keys < 2)
-  {
-    throw Error(ErrorCode::BadInput,
-      "Interpolation needs at least two key frames; there " +
-        std::string(keys == 1 ? "is one." : "are none."));
-  }
   if (this->Values.cols() != keys)
   {
     throw Error(ErrorCode::BadInput,
       "There are " + std::to_string(keys) + " key parameters for " +
         std::to_string(this->Values.cols()) + " key frames: give each its own.");
+  }
+  if (keys < 2)
+  {
+    throw Error(ErrorCode::BadInput,
+      "Interpolation needs at least two key frames; there " +
+        std::string(keys == 1 ? "is one." : "are none."));
   }
   for (int k = 0; k < keys; ++k)
   {
