@@ -162,4 +162,24 @@ SparseMatrix Laplacian(const TriangleMesh& mesh, const Eigen::VectorXd& edgeWeig
   laplacian.finalize();
   return laplacian;
 }
+
+SparseMatrix GraphLaplacian(int numberOfNodes,
+  const Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor>& edges,
+  const Eigen::VectorXd& weights)
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(4 * static_cast<std::size_t>(edges.rows()));
+  for (Eigen::Index e = 0; e < edges.rows(); ++e)
+  {
+    const int i = edges(e, 0);
+    const int j = edges(e, 1);
+    entries.emplace_back(i, i, weights[e]);
+    entries.emplace_back(j, j, weights[e]);
+    entries.emplace_back(i, j, -weights[e]);
+    entries.emplace_back(j, i, -weights[e]);
+  }
+  SparseMatrix laplacian(numberOfNodes, numberOfNodes);
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  return laplacian;
+}
 }

@@ -39,4 +39,10 @@ Eigen::VectorXd SymmetricPart(const TriangleMesh& mesh, const Eigen::VectorXd& e
 /// divide row i by the mixed Voronoi area for the (negative) Laplace-Beltrami
 /// operator. Rows of unused vertices are empty.
 SparseMatrix Laplacian(const TriangleMesh& mesh, const Eigen::VectorXd& edgeWeights);
+
+/// The same for any graph, with an edge (i, j) per row of `edges` (#E x 2) and its
+/// weight: #nodes x #nodes. Edges may be there several times.
+SparseMatrix GraphLaplacian(int numberOfNodes,
+  const Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor>& edges,
+  const Eigen::VectorXd& weights);
 }
