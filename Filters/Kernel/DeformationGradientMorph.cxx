@@ -189,13 +189,14 @@ Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
 }
 }
 
-DeformationGradientMorph::DeformationGradientMorph(KeyFrames keys, const ExecutionContext& context)
-  : Keys(std::move(keys))
+DeformationGradientMorph::DeformationGradientMorph(
+  const KeyFrames& keys, const ExecutionContext& context)
+  : Mesh(keys.Mesh)
 {
-  const TriangleMesh& mesh = *this->Keys.Mesh;
-  const int numberOfKeys = static_cast<int>(this->Keys.Positions.size());
+  const TriangleMesh& mesh = *this->Mesh;
+  const int numberOfKeys = static_cast<int>(keys.Positions.size());
   const Eigen::Index numberOfTriangles = mesh.NumberOfTriangles();
-  const Matrices rest = TriangleCorners(mesh, this->Keys.Positions[0]);
+  const Matrices rest = TriangleCorners(mesh, keys.Positions[0]);
   this->Frames = TriangleFrames(mesh, rest);
   Field vectors = Field::Zero(3 * numberOfTriangles, numberOfKeys);
   Field corners(9 * numberOfTriangles, numberOfKeys);
@@ -203,7 +204,7 @@ DeformationGradientMorph::DeformationGradientMorph(KeyFrames keys, const Executi
   Points weights = Points::Zero(numberOfTriangles, 3);
   for (int k = 0; k < numberOfKeys; ++k)
   {
-    const Points& positions = this->Keys.Positions[k];
+    const Points& positions = keys.Positions[k];
     weights += CornerWeights(mesh, positions, LaplacianWeights::Cotangent, context) / numberOfKeys;
     Matrices local = TriangleCorners(mesh, positions);
     if (k > 0)
@@ -227,14 +228,15 @@ DeformationGradientMorph::DeformationGradientMorph(KeyFrames keys, const Executi
     corners.col(k) = Eigen::Map<const Eigen::VectorXd>(local.data(), local.size());
     context.Report((k + 1.0) / (numberOfKeys + 1.0));
   }
-  this->RotationVectors = KeyInterpolation(this->Keys.Parameters, std::move(vectors));
-  this->Corners = KeyInterpolation(this->Keys.Parameters, std::move(corners));
-  this->Stitching = std::make_unique<TriangleStitching>(mesh, std::move(weights), context);
+  this->RotationVectors = KeyInterpolation(keys.Parameters, std::move(vectors));
+  this->Corners = KeyInterpolation(keys.Parameters, std::move(corners));
+  this->Stitching =
+    TriangleStitching(mesh.GetTriangles(), std::move(weights), mesh.Grounded(), context);
 }
 
 Points DeformationGradientMorph::Evaluate(double t, const ExecutionContext& context)
 {
-  const TriangleMesh& mesh = *this->Keys.Mesh;
+  const TriangleMesh& mesh = *this->Mesh;
   const Eigen::VectorXd vectors = this->RotationVectors.Evaluate(t, context);
   const Eigen::VectorXd local = this->Corners.Evaluate(t, context);
   Matrices corners(mesh.NumberOfTriangles(), 9);
@@ -250,7 +252,8 @@ Points DeformationGradientMorph::Evaluate(double t, const ExecutionContext& cont
       }
     });
   context.Report(0.5);
-  Points positions = this->Stitching->Stitch(mesh, corners);
+  Points positions = Points::Zero(mesh.NumberOfVertices(), 3);
+  this->Stitching.Stitch(corners, positions);
   context.Report(1.0);
   return positions;
 }

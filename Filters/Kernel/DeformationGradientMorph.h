@@ -23,15 +23,15 @@ class DeformationGradientMorph : public SurfaceMorph
 public:
   /// Factorizes. Throws Error(BadInput) where a component has no triangle with
   /// area in one of the key frames.
-  explicit DeformationGradientMorph(KeyFrames keys, const ExecutionContext& context = {});
+  explicit DeformationGradientMorph(const KeyFrames& keys, const ExecutionContext& context = {});
 
   Points Evaluate(double t, const ExecutionContext& context) override;
 
 private:
-  KeyFrames Keys;
+  std::shared_ptr<const TriangleMesh> Mesh;
   Matrices Frames;                  // #T x 9, of the triangles in the first key frame
   KeyInterpolation RotationVectors; // 3 #T rows, from the first key frame, in Frames
   KeyInterpolation Corners;         // 9 #T rows, turned back to the first key frame, in Frames
-  std::unique_ptr<TriangleStitching> Stitching;
+  TriangleStitching Stitching;
 };
 }

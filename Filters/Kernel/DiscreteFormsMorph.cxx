@@ -52,15 +52,16 @@ void FollowAngles(
 }
 }
 
-DiscreteFormsMorph::DiscreteFormsMorph(
-  KeyFrames keys, Transitions transitions, FrameSolver solver, const ExecutionContext& context)
-  : Keys(std::move(keys))
+DiscreteFormsMorph::DiscreteFormsMorph(const KeyFrames& keys, Transitions transitions,
+  FrameSolver solver, const ExecutionContext& context)
+  : Mesh(keys.Mesh)
+  , Parameters(keys.Parameters)
   , Method(transitions)
   , Solver(solver)
   , Laplacian(std::make_shared<ConstrainedSolver>())
 {
-  const TriangleMesh& mesh = *this->Keys.Mesh;
-  const int numberOfKeys = static_cast<int>(this->Keys.Positions.size());
+  const TriangleMesh& mesh = *this->Mesh;
+  const int numberOfKeys = static_cast<int>(keys.Positions.size());
   const int directedEdges = mesh.NumberOfDirectedEdges();
 
   this->Laplacian->Factorize(cartan::Laplacian(mesh, Eigen::VectorXd::Ones(directedEdges)),
@@ -87,7 +88,7 @@ DiscreteFormsMorph::DiscreteFormsMorph(
   {
     const ExecutionContext part = context.Part(
       0.3 + 0.6 * k / numberOfKeys, 0.3 + 0.6 * (k + 1.0) / numberOfKeys);
-    const Points& positions = this->Keys.Positions[k];
+    const Points& positions = keys.Positions[k];
     const Matrices frames = VertexFrames(mesh, positions, part);
     DiscreteForms form = ComputeDiscreteForms(mesh, positions, frames, part);
     // Where no triangle follows there is no angle.
@@ -109,10 +110,10 @@ DiscreteFormsMorph::DiscreteFormsMorph(
       }
       edgeTransitions.push_back(std::move(ofEdges));
     }
-    this->KnownFrames[this->Keys.Parameters[k]] = frames;
+    this->KnownFrames[this->Parameters[k]] = frames;
     part.Report(1.0);
   }
-  this->Forms = KeyInterpolation(this->Keys.Parameters, std::move(forms));
+  this->Forms = KeyInterpolation(this->Parameters, std::move(forms));
   if (this->Method == Transitions::Rotations)
   {
     // From the mean, so that no key frame counts more than another.
@@ -132,15 +133,15 @@ DiscreteFormsMorph::DiscreteFormsMorph(
           VectorFromRotation(mean.transpose() * MatrixAt(edgeTransitions[k], e));
       }
     }
-    this->FromMean = KeyInterpolation(this->Keys.Parameters, std::move(fromMean));
+    this->FromMean = KeyInterpolation(this->Parameters, std::move(fromMean));
   }
-  this->LastParameter = this->Keys.Parameters.front();
+  this->LastParameter = this->Parameters.front();
 }
 
 DiscreteForms DiscreteFormsMorph::FormsAt(double t, const ExecutionContext& context) const
 {
   const Eigen::VectorXd values = this->Forms.Evaluate(t, context);
-  const Eigen::Index directedEdges = this->Keys.Mesh->NumberOfDirectedEdges();
+  const Eigen::Index directedEdges = this->Mesh->NumberOfDirectedEdges();
   DiscreteForms forms;
   forms.Length = values.head(directedEdges);
   forms.Angle = values.segment(directedEdges, directedEdges);
@@ -150,13 +151,14 @@ DiscreteForms DiscreteFormsMorph::FormsAt(double t, const ExecutionContext& cont
   {
     if (forms.Length[d] < 0.0)
     {
-      negative.Add(this->Keys.Mesh->Origin(d));
+      negative.Add(this->Mesh->Origin(d));
     }
   }
   if (!negative.IsEmpty())
   {
     throw Error(ErrorCode::BadInput,
-      "At the parameter " + std::to_string(t) + " edges of negative length would be needed around " +
+      "At the parameter " + std::to_string(t) +
+        " edges of negative length would be needed around " +
         negative.Describe("point", "points") +
         ": choose a parameter nearer to those of the key frames.");
   }
@@ -171,7 +173,7 @@ Matrices DiscreteFormsMorph::EdgeTransitionsAt(
   if (this->Method == Transitions::Forms)
   {
     const cartan::Transitions all = TransitionsFromForms(
-      *this->Keys.Mesh, forms, TransitionMethod::Procrustes, context);
+      *this->Mesh, forms, TransitionMethod::Procrustes, context);
     for (int e = 0; e < numberOfEdges; ++e)
     {
       result.row(e) = all.row(this->Directed[e]);
@@ -194,11 +196,11 @@ Matrices DiscreteFormsMorph::EdgeTransitionsAt(
 bool DiscreteFormsMorph::Average(
   const Matrices& edgeTransitions, Matrices& frames, const ExecutionContext& context)
 {
-  constexpr int maximumSteps = 40;
   const RotationAveraging::Result result =
-    this->Averaging->Improve(edgeTransitions, maximumSteps, frames, context);
+    this->Averaging->Improve(edgeTransitions, frames, context);
   this->Iterations += result.Steps;
-  return result.IsConverged;
+  // What nobody sees is not worth another start.
+  return result.LastTurn < 1e-4;
 }
 
 Matrices DiscreteFormsMorph::FramesAt(
@@ -206,21 +208,22 @@ Matrices DiscreteFormsMorph::FramesAt(
 {
   // From the nearest parameter whose frames are known, and where that is too far,
   // by way of parameters in between.
-  constexpr int mostParts = 64;
+  constexpr int parts = 8;
   const auto nearest = std::min_element(this->KnownFrames.begin(), this->KnownFrames.end(),
     [t](const auto& a, const auto& b) { return std::abs(a.first - t) < std::abs(b.first - t); });
   const double from = nearest->first;
   const Matrices start = nearest->second;
   Matrices frames = start;
   bool isConverged = this->Average(edgeTransitions, frames, context);
-  for (int parts = 4; !isConverged && parts <= mostParts; parts *= 4)
+  if (!isConverged)
   {
     frames = start;
     for (int part = 1; part < parts; ++part)
     {
       const double between = from + (t - from) * part / parts;
       this->Average(
-        this->EdgeTransitionsAt(between, this->FormsAt(between, context), context), frames, context);
+        this->EdgeTransitionsAt(between, this->FormsAt(between, context), context), frames,
+        context);
     }
     isConverged = this->Average(edgeTransitions, frames, context);
   }
@@ -235,7 +238,7 @@ Matrices DiscreteFormsMorph::FramesAt(
 
 Points DiscreteFormsMorph::Evaluate(double t, const ExecutionContext& context)
 {
-  const TriangleMesh& mesh = *this->Keys.Mesh;
+  const TriangleMesh& mesh = *this->Mesh;
   this->Iterations = 0;
   this->Warning.clear();
   const DiscreteForms forms = this->FormsAt(t, context);
@@ -243,8 +246,8 @@ Points DiscreteFormsMorph::Evaluate(double t, const ExecutionContext& context)
   const Matrices edgeTransitions = this->EdgeTransitionsAt(t, forms, context);
   Matrices frames = this->FramesAt(t, edgeTransitions, context.Part(0.1, 0.7));
 
-  const bool isKey = std::find(this->Keys.Parameters.begin(), this->Keys.Parameters.end(),
-                       this->LastParameter) != this->Keys.Parameters.end();
+  const bool isKey = std::find(this->Parameters.begin(), this->Parameters.end(),
+                       this->LastParameter) != this->Parameters.end();
   if (!isKey)
   {
     this->KnownFrames.erase(this->LastParameter);
@@ -263,7 +266,8 @@ Points DiscreteFormsMorph::Evaluate(double t, const ExecutionContext& context)
       MatrixAt(transitions, mesh.Twin(d)) = forward.transpose();
     }
     frames = this->Solver == FrameSolver::Direct
-      ? SolveFrames(mesh, transitions, mesh.Grounded(), std::move(frames), this->FrameSystem, context)
+      ? SolveFrames(
+          mesh, transitions, mesh.Grounded(), std::move(frames), this->FrameSystem, context)
       : SolveFramesFrom(mesh, transitions, mesh.Grounded(), std::move(frames), *this->Laplacian,
           &this->Iterations, context);
     context.For(mesh.NumberOfVertices(),

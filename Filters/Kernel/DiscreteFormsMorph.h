@@ -47,7 +47,8 @@ public:
 
   /// Factorizes the graph Laplacian. Throws Error(BadInput) where a vertex of a
   /// key frame has no normal.
-  explicit DiscreteFormsMorph(KeyFrames keys, Transitions transitions = Transitions::Rotations,
+  explicit DiscreteFormsMorph(const KeyFrames& keys,
+    Transitions transitions = Transitions::Rotations,
     FrameSolver solver = FrameSolver::RotationAveraging, const ExecutionContext& context = {});
 
   /// Throws Error(BadInput) far outside of the key frames, where a length is
@@ -65,7 +66,8 @@ private:
   Matrices FramesAt(double t, const Matrices& edgeTransitions, const ExecutionContext& context);
   bool Average(const Matrices& edgeTransitions, Matrices& frames, const ExecutionContext& context);
 
-  KeyFrames Keys;
+  std::shared_ptr<const TriangleMesh> Mesh;
+  std::vector<double> Parameters; // of the key frames
   Transitions Method;
   FrameSolver Solver;
   KeyInterpolation Forms;       // rows: lengths, angles, heights of all directed edges

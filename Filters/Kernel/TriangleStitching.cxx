@@ -5,48 +5,43 @@
 
 namespace cartan
 {
-TriangleStitching::TriangleStitching(
-  const TriangleMesh& mesh, Points cornerWeights, const ExecutionContext& context)
-  : CornerWeights(std::move(cornerWeights))
+TriangleStitching::TriangleStitching(Triangles triangles, Points cornerWeights,
+  const std::vector<char>& isHeld, const ExecutionContext& context)
+  : Corners(std::move(triangles))
+  , Weights(std::move(cornerWeights))
 {
-  Eigen::VectorXd edgeWeights(mesh.NumberOfDirectedEdges());
-  for (int d = 0; d < mesh.NumberOfDirectedEdges(); ++d)
+  Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> edges(3 * this->Corners.rows(), 2);
+  for (Eigen::Index t = 0; t < this->Corners.rows(); ++t)
   {
-    edgeWeights[d] = 0.0;
-    for (const int side : { d, mesh.Twin(d) })
+    for (int corner = 0; corner < 3; ++corner)
     {
-      const int triangle = mesh.LeftTriangle(side);
-      for (int corner = 0; triangle >= 0 && corner < 3; ++corner)
-      {
-        if (mesh.GetTriangles()(triangle, corner) == mesh.Opposite(side))
-        {
-          edgeWeights[d] += this->CornerWeights(triangle, corner);
-        }
-      }
+      edges.row(3 * t + corner) << this->Corners(t, (corner + 1) % 3),
+        this->Corners(t, (corner + 2) % 3);
     }
   }
+  const Eigen::Map<const Eigen::VectorXd> weights(this->Weights.data(), this->Weights.size());
   this->Solver.Factorize(
-    Laplacian(mesh, edgeWeights), mesh.Grounded(), {}, {}, context);
+    GraphLaplacian(static_cast<int>(isHeld.size()), edges, weights), isHeld, {}, {}, context);
 }
 
-Points TriangleStitching::Stitch(const TriangleMesh& mesh, const Matrices& corners) const
+void TriangleStitching::Stitch(const Matrices& corners, Points& positions) const
 {
-  Field rightHandSide = Field::Zero(mesh.NumberOfVertices(), 3);
-  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
+  Field rightHandSide = Field::Zero(positions.rows(), 3);
+  for (Eigen::Index t = 0; t < this->Corners.rows(); ++t)
   {
     const auto triangle = MatrixAt(corners, t);
     for (int corner = 0; corner < 3; ++corner)
     {
       const int from = (corner + 1) % 3;
       const int to = (corner + 2) % 3;
-      const Eigen::Vector3d pull =
-        this->CornerWeights(t, corner) * (triangle.col(to) - triangle.col(from));
-      rightHandSide.row(mesh.GetTriangles()(t, to)) += pull.transpose();
-      rightHandSide.row(mesh.GetTriangles()(t, from)) -= pull.transpose();
+      const Eigen::RowVector3d pull =
+        this->Weights(t, corner) * (triangle.col(to) - triangle.col(from)).transpose();
+      rightHandSide.row(this->Corners(t, to)) += pull;
+      rightHandSide.row(this->Corners(t, from)) -= pull;
     }
   }
-  Field positions = Field::Zero(mesh.NumberOfVertices(), 3);
-  this->Solver.Solve(rightHandSide, positions);
-  return positions;
+  Field values = positions;
+  this->Solver.Solve(rightHandSide, values);
+  positions = values;
 }
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "ConstrainedSolver.h"
-#include "TriangleMesh.h"
 
 namespace cartan
 {
@@ -11,25 +10,29 @@ namespace cartan
 ///
 ///   sum over triangles and their edges of w |x_b - x_a - (p_b - p_a)|^2,
 ///
-/// p a triangle's own corners and w what it adds to the weight of the edge
-/// (CornerWeights). With cotangent weights this is the fit of the triangles'
-/// gradients weighted by area (Yu et al., Mesh Editing with Poisson-based
-/// Gradient Field Manipulation, 2004). Factorized once for all p.
+/// p a triangle's own corners and w a weight for each of its edges. With half the
+/// cotangents of the opposite angles (CornerWeights) this is the fit of the
+/// triangles' gradients weighted by area (Yu et al., Mesh Editing with
+/// Poisson-based Gradient Field Manipulation, 2004). Factorized once for all p.
 class TriangleStitching
 {
 public:
-  /// `cornerWeights` is #T x 3. One vertex of each component is fixed at the
-  /// origin.
-  TriangleStitching(const TriangleMesh& mesh, Points cornerWeights,
+  TriangleStitching() = default;
+
+  /// `cornerWeights` (#T x 3) are those of the edges opposite to corners. The
+  /// vertices of `isHeld` (#V) keep their places: one in each component at least,
+  /// and those in no triangle.
+  TriangleStitching(Triangles triangles, Points cornerWeights, const std::vector<char>& isHeld,
     const ExecutionContext& context = {});
 
   /// `corners` is #T x 9, the three corners of each triangle one after the
-  /// other; where the triangle lies does not matter. #V x 3; unused vertices are
-  /// at the origin.
-  Points Stitch(const TriangleMesh& mesh, const Matrices& corners) const;
+  /// other; where the triangle lies does not matter. Writes `positions` (#V x 3)
+  /// but for those held.
+  void Stitch(const Matrices& corners, Points& positions) const;
 
 private:
-  Points CornerWeights;
+  Triangles Corners;
+  Points Weights;
   ConstrainedSolver Solver;
 };
 }
