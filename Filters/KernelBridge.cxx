@@ -532,9 +532,8 @@ Surface ReadConnectivity(vtkPolyData* input, const std::string& role)
   return surface;
 }
 
-bool IsSameSurface(const Surface& surface, vtkPolyData* input)
+bool IsSameSurface(const Surface::Source& before, vtkPolyData* input)
 {
-  const Surface::Source& before = surface.ReadFrom;
   return IsUnchanged(before.Points.Get(), before.PointsTime, input->GetPoints(),
            [](vtkPoints* a, vtkPoints* b) { return SameValues(a->GetData(), b->GetData()); }) &&
     IsUnchanged(before.Polygons.Get(), before.PolygonsTime, input->GetPolys(), SameCells) &&

@@ -60,9 +60,9 @@ Surface ReadSurface(vtkPolyData* input, const std::string& role = "input");
 /// ReadSurface does, and for polygons that are no triangles.
 Surface ReadConnectivity(vtkPolyData* input, const std::string& role = "input");
 
-/// Whether `input` still has the points and polygons of `surface`, compared by
+/// Whether `input` still has the points and polygons that it had, compared by
 /// value. Upstream filters that run again hand on equal data in new arrays.
-bool IsSameSurface(const Surface& surface, vtkPolyData* input);
+bool IsSameSurface(const Surface::Source& before, vtkPolyData* input);
 
 /// Makes `output` a shallow copy of `input` with new points in the input's
 /// precision: `positions` (#V x 3, relative to origin) for used points, the

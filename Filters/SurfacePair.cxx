@@ -12,17 +12,23 @@ namespace cartan
 {
 namespace
 {
-constexpr const char* Advice =
-  " Give the reference the same points and cells in the same order, such as the surface before it "
-  "was deformed.";
-
-void RequireSameCount(const std::string& what, vtkIdType current, vtkIdType reference)
+/// A surface and its name in messages.
+struct Named
 {
-  if (current != reference)
+  vtkPolyData* Surface;
+  const std::string& Role;
+};
+
+void RequireSameCount(const std::string& what, const Named& first, const Named& other,
+  vtkIdType (vtkPolyData::*count)(), const std::string& advice)
+{
+  const vtkIdType here = (first.Surface->*count)();
+  const vtkIdType there = (other.Surface->*count)();
+  if (here != there)
   {
     throw Error(ErrorCode::BadInput,
-      "The input has " + std::to_string(current) + " " + what + ", the reference " +
-        std::to_string(reference) + "." + Advice);
+      "The " + first.Role + " has " + std::to_string(here) + " " + what + ", the " + other.Role +
+        " " + std::to_string(there) + ". " + advice);
   }
 }
 
@@ -77,52 +83,76 @@ Points PositionsFor(
   }
   return std::move(surface.Positions);
 }
+
+vtkIdType FirstPolygon(vtkPolyData* surface)
+{
+  return surface->GetNumberOfVerts() + surface->GetNumberOfLines();
+}
+
+void RequireSameConnectivity(const Named& first, const Named& other, const std::string& advice)
+{
+  RequireSameCount("points", first, other, &vtkPolyData::GetNumberOfPoints, advice);
+  RequireSameCount("polygons", first, other, &vtkPolyData::GetNumberOfPolys, advice);
+  RequireSameCount("triangle strips", first, other, &vtkPolyData::GetNumberOfStrips, advice);
+  const vtkIdType firstPolygon = FirstPolygon(first.Surface);
+  IdSample differences;
+  CollectDifferences(
+    first.Surface->GetPolys(), other.Surface->GetPolys(), firstPolygon, differences);
+  CollectDifferences(first.Surface->GetStrips(), other.Surface->GetStrips(),
+    firstPolygon + first.Surface->GetNumberOfPolys(), differences);
+  if (!differences.IsEmpty())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The " + first.Role + " has " + differences.Describe("cell", "cells") +
+        " with other points than in the " + other.Role + ". " + advice);
+  }
+}
+}
+
+MatchedSurfaces ReadMatchedSurfaces(const std::vector<vtkPolyData*>& inputs,
+  const std::vector<std::string>& roles, const std::string& advice)
+{
+  const Named first{ inputs.front(), roles.front() };
+  MatchedSurfaces matched;
+  std::vector<Surface> surfaces;
+  // Where some are so flat that polygons cannot be triangulated, another one
+  // knows how.
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < inputs.size(); ++k)
+  {
+    surfaces.push_back(ReadSurface(inputs[k], roles[k]));
+    RequireSameConnectivity(first, { inputs[k], roles[k] }, advice);
+    if (surfaces[k].Mesh.NumberOfTriangles() > surfaces[best].Mesh.NumberOfTriangles())
+    {
+      best = k;
+    }
+    matched.Warning += (matched.Warning.empty() || surfaces[k].Warning.empty() ? "" : " ") +
+      surfaces[k].Warning;
+    matched.Origins.push_back(surfaces[k].Origin);
+    matched.ReadFrom.push_back(surfaces[k].ReadFrom);
+  }
+  matched.Mesh = surfaces[best].Mesh;
+  matched.CellIds = surfaces[best].CellIds;
+  // Lines and vertices have ids before the polygons and may differ in number.
+  const vtkIdType shift = FirstPolygon(inputs.front()) - FirstPolygon(inputs[best]);
+  for (long long& cell : matched.CellIds)
+  {
+    cell += shift;
+  }
+  for (std::size_t k = 0; k < inputs.size(); ++k)
+  {
+    matched.Positions.push_back(
+      PositionsFor(matched.Mesh, std::move(surfaces[k]), inputs[k], roles[k]));
+  }
+  return matched;
 }
 
 SurfacePair ReadSurfacePair(vtkPolyData* current, vtkPolyData* reference)
 {
-  Surface currentSurface = ReadSurface(current, "input");
-  Surface referenceSurface = ReadSurface(reference, "reference");
-  RequireSameCount("points", current->GetNumberOfPoints(), reference->GetNumberOfPoints());
-  RequireSameCount("polygons", current->GetNumberOfPolys(), reference->GetNumberOfPolys());
-  RequireSameCount("triangle strips", current->GetNumberOfStrips(), reference->GetNumberOfStrips());
-  const vtkIdType firstPolygon = current->GetNumberOfVerts() + current->GetNumberOfLines();
-  IdSample differences;
-  CollectDifferences(current->GetPolys(), reference->GetPolys(), firstPolygon, differences);
-  CollectDifferences(current->GetStrips(), reference->GetStrips(),
-    firstPolygon + current->GetNumberOfPolys(), differences);
-  if (!differences.IsEmpty())
-  {
-    throw Error(ErrorCode::BadInput,
-      "The input has " + differences.Describe("cell", "cells") +
-        " with other points than in the reference." + Advice);
-  }
-
-  SurfacePair pair;
-  pair.Warning = currentSurface.Warning;
-  pair.Warning += (pair.Warning.empty() || referenceSurface.Warning.empty() ? "" : " ") +
-    referenceSurface.Warning;
-  // Where one of them is so flat that polygons cannot be triangulated, the
-  // other one knows how.
-  if (currentSurface.Mesh.NumberOfTriangles() > referenceSurface.Mesh.NumberOfTriangles())
-  {
-    pair.Mesh = currentSurface.Mesh;
-    pair.CellIds = currentSurface.CellIds;
-  }
-  else
-  {
-    pair.Mesh = referenceSurface.Mesh;
-    pair.CellIds = referenceSurface.CellIds;
-    // Lines and vertices have ids before the polygons and may differ in number.
-    const vtkIdType shift =
-      firstPolygon - reference->GetNumberOfVerts() - reference->GetNumberOfLines();
-    for (long long& cell : pair.CellIds)
-    {
-      cell += shift;
-    }
-  }
-  pair.Current = PositionsFor(pair.Mesh, std::move(currentSurface), current, "input");
-  pair.Reference = PositionsFor(pair.Mesh, std::move(referenceSurface), reference, "reference");
-  return pair;
+  MatchedSurfaces matched = ReadMatchedSurfaces({ current, reference }, { "input", "reference" },
+    "Give both the same points and cells in the same order, such as a surface before and after it "
+    "was deformed.");
+  return { std::move(matched.Mesh), std::move(matched.CellIds), std::move(matched.Positions[1]),
+    std::move(matched.Positions[0]), std::move(matched.Warning) };
 }
 }

@@ -367,7 +367,8 @@ public:
   Session& FindSession(vtkAlgorithm* filter, vtkPolyData* input)
   {
     auto found = std::find_if(this->Sessions.begin(), this->Sessions.end(),
-      [input](const Session& session) { return cartan::IsSameSurface(*session.Surface, input); });
+      [input](const Session& session)
+      { return cartan::IsSameSurface(session.Surface->ReadFrom, input); });
     if (found == this->Sessions.end())
     {
       Session session;

@@ -9,7 +9,7 @@ FILTERS = {
     "DiscreteForms", "FrameReconstruction", "MarkHandle", "RotationInvariantDeformation",
     "ShapePreservingDeformation", "SimilarityDeformation", "AsRigidAsPossibleDeformation",
     "LaplacianDeformation", "PoissonDeformation", "MultiresolutionDeformation",
-    "CurvatureError", "VolumeChange",
+    "CurvatureError", "VolumeChange", "SurfaceMorph",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 
