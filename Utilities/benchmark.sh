@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Configures, builds and runs the benchmarks in build/benchmarks; the output ends
-# with a table of what was asked and what was measured. Arguments are Google
-# Benchmark's, for example --benchmark_filter=104K. Takes about five minutes and
-# means something only on a machine that does nothing else.
+# Configures, builds and runs the benchmarks in build/benchmarks: similarity
+# editing and as-rigid-as-possible deformation, each with a table of what was
+# asked and what was measured, then the motions of the linear methods by Google
+# Benchmark, with such a table at the end. Arguments are Google Benchmark's, for
+# example --benchmark_filter=104K. Takes about ten minutes and means something
+# only on a machine that does nothing else.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -10,5 +12,7 @@ Utilities/bootstrap.sh
 cmake -S . -B build/benchmarks -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCARTAN_BUILD_BENCHMARKS=ON -DCARTAN_BUILD_TESTING=OFF \
   -DCARTAN_BUILD_PLUGIN=OFF -DCARTAN_WRAP_PYTHON=OFF
-cmake --build build/benchmarks --target CartanBenchmarkDeformation
+cmake --build build/benchmarks --target benchmarks
+build/benchmarks/bin/CartanBenchmarkSimilarity
+build/benchmarks/bin/CartanBenchmarkAsRigidAsPossible
 build/benchmarks/bin/CartanBenchmarkDeformation "$@"

@@ -9,7 +9,7 @@
 //   ends   static below 5 % of the height, handle above 95 %: nearly all free
 //   thirds static below 30 %, handle above 80 %
 // Google Benchmark's own options apply, for example --benchmark_filter=104K.
-#include "OffReader.h"
+#include "BenchmarkTools.h"
 #include "PeerDeformation.h"
 
 #include "Kernel/RotationInvariantDeformer.h"
@@ -39,9 +39,8 @@
 #include <map>
 #include <optional>
 #include <sstream>
-#include <thread>
-#include <unordered_map>
 
+using namespace benchmarks;
 using cartan::FrameProjection;
 using cartan::SolverBackend;
 
@@ -49,60 +48,10 @@ namespace
 {
 constexpr double Degrees = 3.14159265358979323846 / 180.0;
 
-struct Mesh
-{
-  cartan::Points Points;
-  cartan::Triangles Triangles;
-};
-
-/// Each triangle into four, by the edges' midpoints.
-Mesh Subdivide(const Mesh& mesh)
-{
-  std::unordered_map<long long, int> midpoints;
-  std::vector<Eigen::RowVector3d> added;
-  const int count = static_cast<int>(mesh.Points.rows());
-  const auto midpoint = [&](int a, int b)
-  {
-    const long long key = static_cast<long long>(std::min(a, b)) * count + std::max(a, b);
-    const auto [found, isNew] = midpoints.emplace(key, count + static_cast<int>(added.size()));
-    if (isNew)
-    {
-      added.push_back(0.5 * (mesh.Points.row(a) + mesh.Points.row(b)));
-    }
-    return found->second;
-  };
-  Mesh result;
-  result.Triangles.resize(4 * mesh.Triangles.rows(), 3);
-  for (Eigen::Index t = 0; t < mesh.Triangles.rows(); ++t)
-  {
-    const int a = mesh.Triangles(t, 0), b = mesh.Triangles(t, 1), c = mesh.Triangles(t, 2);
-    const int ab = midpoint(a, b), bc = midpoint(b, c), ca = midpoint(c, a);
-    result.Triangles.row(4 * t) << a, ab, ca;
-    result.Triangles.row(4 * t + 1) << b, bc, ab;
-    result.Triangles.row(4 * t + 2) << c, ca, bc;
-    result.Triangles.row(4 * t + 3) << ab, bc, ca;
-  }
-  result.Points.resize(count + static_cast<int>(added.size()), 3);
-  result.Points.topRows(count) = mesh.Points;
-  for (std::size_t i = 0; i < added.size(); ++i)
-  {
-    result.Points.row(count + static_cast<int>(i)) = added[i];
-  }
-  return result;
-}
-
-/// The armadillo, centred on the origin, subdivided `times` times.
+/// The armadillo, subdivided `times` times.
 Mesh Armadillo(int times)
 {
-  const offreader::Mesh file = offreader::Read(offreader::MeshPath("armadillo"));
-  Mesh mesh;
-  mesh.Points = Eigen::Map<const cartan::Points>(
-    file.Points.data(), static_cast<Eigen::Index>(file.Points.size() / 3), 3);
-  mesh.Triangles = Eigen::Map<const cartan::Triangles>(
-    file.Triangles.data(), static_cast<Eigen::Index>(file.Triangles.size() / 3), 3);
-  const Eigen::RowVector3d center =
-    0.5 * (mesh.Points.colwise().minCoeff() + mesh.Points.colwise().maxCoeff());
-  mesh.Points.rowwise() -= center;
+  Mesh mesh = ReadMesh("armadillo");
   for (int i = 0; i < times; ++i)
   {
     mesh = Subdivide(mesh);
@@ -124,6 +73,8 @@ struct Case
     return names[this->Subdivisions];
   }
   std::string Handles() const { return this->IsEnds ? "ends" : "thirds"; }
+  double Low() const { return this->IsEnds ? 0.05 : 0.3; }
+  double High() const { return this->IsEnds ? 0.95 : 0.8; }
   std::string SolverName() const
   {
     return this->Backend == SolverBackend::Eigen ? "Eigen" : "CHOLMOD";
@@ -136,20 +87,6 @@ struct Case
   bool operator==(const Case& other) const { return this->Name() == other.Name(); }
 };
 
-/// 1 is static, 2 moves.
-std::vector<int> Handles(const Mesh& mesh, bool isEnds)
-{
-  const double low = mesh.Points.col(1).minCoeff();
-  const double height = mesh.Points.col(1).maxCoeff() - low;
-  std::vector<int> handles(mesh.Points.rows());
-  for (Eigen::Index v = 0; v < mesh.Points.rows(); ++v)
-  {
-    const double y = (mesh.Points(v, 1) - low) / height;
-    handles[v] = y <= (isEnds ? 0.05 : 0.3) ? 1 : y >= (isEnds ? 0.95 : 0.8) ? 2 : 0;
-  }
-  return handles;
-}
-
 /// A new motion each time it is asked: turns about x, back and forth.
 cartan::HandleMotion NextMotion()
 {
@@ -161,32 +98,6 @@ cartan::HandleMotion NextMotion()
     Eigen::AngleAxisd(motion.RotationVector.norm(), Eigen::Vector3d::UnitX()).toRotationMatrix();
   motion.Translation = Eigen::Vector3d(0.0, 0.01 * step, 0.0);
   return motion;
-}
-
-/// Splits loops evenly over the machine's threads.
-cartan::ExecutionContext Context(bool isThreaded)
-{
-  if (!isThreaded)
-  {
-    return {};
-  }
-  return { [](int n, const cartan::ExecutionContext::Range& body)
-    {
-      const int count = std::max(1u, std::thread::hardware_concurrency());
-      std::vector<std::thread> threads;
-      const auto bound = [=](int i)
-      { return static_cast<int>(static_cast<long long>(n) * i / count); };
-      for (int i = 1; i < count; ++i)
-      {
-        threads.emplace_back([&body, from = bound(i), to = bound(i + 1)]() { body(from, to); });
-      }
-      body(0, bound(1));
-      for (std::thread& thread : threads)
-      {
-        thread.join();
-      }
-    },
-    nullptr };
 }
 
 class Clock
@@ -219,27 +130,12 @@ const Mesh& CachedMesh(int subdivisions)
   return mesh;
 }
 
-cartan::HandleProblem Problem(const Case& which, const Mesh& mesh)
-{
-  if (!cartan::TriangleMesh::Check(mesh.Points, mesh.Triangles).IsUsable())
-  {
-    throw std::runtime_error("The mesh is not usable.");
-  }
-  cartan::HandleProblem problem;
-  problem.Mesh = std::make_shared<const cartan::TriangleMesh>(
-    static_cast<int>(mesh.Points.rows()), mesh.Triangles);
-  problem.Rest = std::make_shared<const cartan::Points>(mesh.Points);
-  problem.Handle = Handles(mesh, which.IsEnds);
-  problem.Moving = { 2 };
-  return problem;
-}
-
 /// Seconds of the steps that RotationInvariantDeformer goes through, and of the
 /// whole, which ends with the fields of the first raw motion.
 void SetUp(benchmark::State& state, const Case& which)
 {
   const Mesh& mesh = CachedMesh(which.Subdivisions);
-  const cartan::ExecutionContext context = Context(which.IsThreaded);
+  const cartan::ExecutionContext context = Threads(which.IsThreaded);
   double steps[4] = {};
   double fields = 0.0;
   int free = 0;
@@ -247,7 +143,7 @@ void SetUp(benchmark::State& state, const Case& which)
   {
     {
       Clock clock;
-      const cartan::HandleProblem problem = Problem(which, mesh);
+      const cartan::HandleProblem problem = MakeProblem(mesh, which.Low(), which.High());
       steps[0] += clock.Lap();
       const Eigen::VectorXd directed =
         cartan::EdgeWeights(*problem.Mesh, *problem.Rest, problem.Weights, context);
@@ -261,7 +157,8 @@ void SetUp(benchmark::State& state, const Case& which)
       steps[3] += clock.Lap();
     }
     Clock clock;
-    cartan::RotationInvariantDeformer deformer(Problem(which, mesh), which.Backend, context);
+    cartan::RotationInvariantDeformer deformer(
+      MakeProblem(mesh, which.Low(), which.High()), which.Backend, context);
     deformer.SetFrameProjection(FrameProjection::None);
     cartan::DeformedSurface result;
     cartan::HandleTargets targets;
@@ -285,7 +182,7 @@ void SetUp(benchmark::State& state, const Case& which)
 /// A motion in the kernel.
 void KernelMotion(benchmark::State& state, const Case& which, FrameProjection projection)
 {
-  const cartan::ExecutionContext context = Context(which.IsThreaded);
+  const cartan::ExecutionContext context = Threads(which.IsThreaded);
   // Kept from one repetition, and one projection, to the next.
   static std::optional<Case> cached;
   static std::unique_ptr<cartan::RotationInvariantDeformer> deformer;
@@ -293,7 +190,8 @@ void KernelMotion(benchmark::State& state, const Case& which, FrameProjection pr
   {
     deformer.reset();
     deformer = std::make_unique<cartan::RotationInvariantDeformer>(
-      Problem(which, CachedMesh(which.Subdivisions)), which.Backend, context);
+      MakeProblem(CachedMesh(which.Subdivisions), which.Low(), which.High()), which.Backend,
+      context);
     cached = which;
   }
   deformer->SetFrameProjection(projection);
@@ -308,7 +206,7 @@ void KernelMotion(benchmark::State& state, const Case& which, FrameProjection pr
   }
 }
 
-vtkSmartPointer<vtkPolyData> MarkedSurface(const Mesh& mesh, bool isEnds)
+vtkSmartPointer<vtkPolyData> MarkedSurface(const Mesh& mesh, const Case& which)
 {
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetNumberOfComponents(3);
@@ -326,7 +224,7 @@ vtkSmartPointer<vtkPolyData> MarkedSurface(const Mesh& mesh, bool isEnds)
   vtkNew<vtkIntArray> handle;
   handle->SetName("Handle");
   handle->SetNumberOfValues(mesh.Points.rows());
-  const std::vector<int> handles = Handles(mesh, isEnds);
+  const std::vector<int> handles = MarkEnds(mesh, which.Low(), which.High());
   std::copy(handles.begin(), handles.end(), handle->GetPointer(0));
   auto surface = vtkSmartPointer<vtkPolyData>::New();
   surface->SetPoints(points);
@@ -358,7 +256,7 @@ void FilterMotion(benchmark::State& state, const Case& which, FrameProjection pr
     filter = vtkSmartPointer<vtkRotationInvariantDeformation>::New();
     motion = vtkSmartPointer<vtkHandleMotion>::New();
     motion->SetAxis(1.0, 0.0, 0.0);
-    filter->SetInputData(MarkedSurface(CachedMesh(which.Subdivisions), which.IsEnds));
+    filter->SetInputData(MarkedSurface(CachedMesh(which.Subdivisions), which));
     filter->SetHandleMotion(2, motion);
     cached = which;
   }
@@ -401,7 +299,7 @@ void ShapeMotion(benchmark::State& state, const Case& which, const Preservation&
     filter = vtkSmartPointer<vtkShapePreservingDeformation>::New();
     motion = vtkSmartPointer<vtkHandleMotion>::New();
     motion->SetAxis(1.0, 0.0, 0.0);
-    filter->SetInputData(MarkedSurface(CachedMesh(which.Subdivisions), which.IsEnds));
+    filter->SetInputData(MarkedSurface(CachedMesh(which.Subdivisions), which));
     filter->SetHandleMotion(2, motion);
     cached = which;
   }
@@ -425,8 +323,8 @@ void PeerIteration(benchmark::State& state, const Case& which)
   {
     const Mesh& mesh = CachedMesh(which.Subdivisions);
     peer.reset();
-    peer =
-      std::make_unique<PeerDeformation>(mesh.Points, mesh.Triangles, Handles(mesh, which.IsEnds));
+    peer = std::make_unique<PeerDeformation>(
+      mesh.Points, mesh.Triangles, MarkEnds(mesh, which.Low(), which.High()));
     cached = which;
   }
   for (auto _ : state)
@@ -461,8 +359,7 @@ double ProcessMemory(const std::string& key)
 double MeasureMemory(const Case& which, bool isFilter)
 {
   const Mesh mesh = Armadillo(which.Subdivisions);
-  const vtkSmartPointer<vtkPolyData> surface =
-    isFilter ? MarkedSurface(mesh, which.IsEnds) : nullptr;
+  const vtkSmartPointer<vtkPolyData> surface = isFilter ? MarkedSurface(mesh, which) : nullptr;
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << 5; // the peak starts anew
   const double before = ProcessMemory("VmRSS");
@@ -481,7 +378,8 @@ double MeasureMemory(const Case& which, bool isFilter)
   }
   else
   {
-    cartan::RotationInvariantDeformer deformer(Problem(which, mesh), which.Backend);
+    cartan::RotationInvariantDeformer deformer(
+      MakeProblem(mesh, which.Low(), which.High()), which.Backend);
     cartan::DeformedSurface result;
     for (const FrameProjection projection : { FrameProjection::None, FrameProjection::Automatic })
     {
@@ -575,19 +473,6 @@ private:
   std::map<std::string, Result> Best;
 };
 
-void PrintRow(const std::string& what, const std::string& asked, const char* format, double value,
-  const char* verdict)
-{
-  std::printf("  %-58s %-10s ", what.c_str(), asked.c_str());
-  std::printf(format, value);
-  std::printf("  %s\n", verdict);
-}
-
-const char* Verdict(bool isMet)
-{
-  return isMet ? "met" : "MISSED";
-}
-
 void PrintTable(const Collector& results, const std::vector<Case>& cases)
 {
   std::printf("\n%-60s %-10s %s\n", "Asked and measured", "asked", "measured");
@@ -601,20 +486,19 @@ void PrintTable(const Collector& results, const std::vector<Case>& cases)
     const bool isTarget = which.Subdivisions == 1;
     std::printf("%s, %.0f free vertices\n", which.Name().c_str(), results.Value(setUp, "free"));
     const double seconds = results.Wall(setUp);
-    PrintRow("set-up", isTarget ? "< 1 s" : "", "%8.3f s ", seconds,
-      isTarget ? Verdict(seconds < 1.0) : "");
+    PrintRow("set-up", isTarget ? "< 1 s" : "", seconds, "s", seconds < 1.0);
     const std::pair<const char*, const char*> steps[] = { { "mesh", "check and connectivity" },
       { "weights", "cotangent weights" }, { "factorize", "assembly and factorization" },
       { "harmonic", "harmonic fields" }, { "first_motion", "fields of the first raw motion" } };
     for (const auto& [counter, label] : steps)
     {
-      PrintRow(std::string("  ") + label, "", "%8.3f s ", results.Value(setUp, counter), "");
+      PrintRow(std::string("  ") + label, "", results.Value(setUp, counter), "s");
     }
     const std::string peer = "cgal/" + which.Surface() + "/" + which.Handles();
     if (isTarget && results.Has(peer))
     {
-      PrintRow("one iteration of CGAL ORIGINAL_ARAP", "", "%8.2f ms",
-        1e3 * results.Seconds(peer, which.IsThreaded), "");
+      PrintRow("one iteration of CGAL ORIGINAL_ARAP", "",
+        1e3 * results.Seconds(peer, which.IsThreaded), "ms");
     }
     for (const auto& [level, projection, asked] :
       { std::tuple<const char*, const char*, double>{ "kernel", "raw", 1.0 / 20.0 },
@@ -626,15 +510,15 @@ void PrintTable(const Collector& results, const std::vector<Case>& cases)
       {
         continue;
       }
-      PrintRow(std::string(projection) + " motion, " + level, "", "%8.2f ms",
-        1e3 * results.Seconds(motion, which.IsThreaded), "");
+      PrintRow(std::string(projection) + " motion, " + level, "",
+        1e3 * results.Seconds(motion, which.IsThreaded), "ms");
       if (isTarget && results.Has(peer))
       {
         const double ratio =
           results.Seconds(motion, which.IsThreaded) / results.Seconds(peer, which.IsThreaded);
         char text[16];
         std::snprintf(text, sizeof(text), "<= %.2f", asked);
-        PrintRow("  ratio to CGAL's iteration", text, "%8.4f   ", ratio, Verdict(ratio <= asked));
+        PrintRow("  ratio to CGAL's iteration", text, ratio, "", ratio <= asked);
       }
     }
     const std::string shape = std::string(Preservations[0].Name) + "/" + which.Name();
@@ -646,18 +530,16 @@ void PrintTable(const Collector& results, const std::vector<Case>& cases)
         continue;
       }
       const double seconds = results.Seconds(motion, which.IsThreaded);
-      PrintRow(std::string(preservation.Name) + " motion, filter", "", "%8.2f ms", 1e3 * seconds,
-        "");
+      PrintRow(std::string(preservation.Name) + " motion, filter", "", 1e3 * seconds, "ms");
       if (motion == shape && isTarget && results.Has(peer))
       {
         const double ratio = seconds / results.Seconds(peer, which.IsThreaded);
-        PrintRow("  ratio to CGAL's iteration", "<= 0.33", "%8.4f   ", ratio,
-          Verdict(ratio <= 1.0 / 3.0));
+        PrintRow("  ratio to CGAL's iteration", "<= 0.33", ratio, "", ratio <= 1.0 / 3.0);
       }
       else if (motion != shape && results.Has(shape))
       {
         const double ratio = seconds / results.Seconds(shape, which.IsThreaded);
-        PrintRow("  ratio to the motion without", "<= 4", "%8.4f   ", ratio, Verdict(ratio <= 4.0));
+        PrintRow("  ratio to the motion without", "<= 4", ratio, "", ratio <= 4.0);
       }
     }
     for (const char* level : { "kernel", "filter" })
@@ -667,8 +549,8 @@ void PrintTable(const Collector& results, const std::vector<Case>& cases)
       if (results.Has(memory))
       {
         const double bytes = results.Value(memory, "bytes_per_vertex");
-        PrintRow(std::string("memory per vertex, ") + level, "<= 2048 B", "%8.0f B ", bytes,
-          Verdict(bytes <= 2048.0));
+        PrintRow(
+          std::string("memory per vertex, ") + level, "<= 2048 B", bytes, "B", bytes <= 2048.0);
       }
     }
   }
