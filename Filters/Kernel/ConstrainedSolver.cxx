@@ -5,6 +5,9 @@
 
 #ifdef CARTAN_HAVE_CHOLMOD
 #include <cholmod.h>
+#ifdef CARTAN_HAVE_OPENMP
+#include <omp.h>
+#endif
 #endif
 
 #include <algorithm>
@@ -136,6 +139,7 @@ public:
     cholmod_free_factor(&this->Factors, &this->Common);
     cholmod_sparse view = View(lower);
     this->Factors = cholmod_copy_factor(this->Symbolic, &this->Common);
+    const SerialOpenMp serial;
     if (!this->Factors || !cholmod_factorize(&view, this->Factors, &this->Common) ||
       this->Common.status != CHOLMOD_OK)
     {
@@ -168,6 +172,30 @@ public:
   }
 
 private:
+  /// CHOLMOD starts OpenMP's threads for the little work around each product of
+  /// matrices, which has threads of its own. On few cores they wait for each
+  /// other, and the factorization takes up to twice as long, or many times as
+  /// long beside other programs.
+  class SerialOpenMp
+  {
+  public:
+#ifdef CARTAN_HAVE_OPENMP
+    SerialOpenMp()
+      : Levels(omp_get_max_active_levels())
+    {
+      omp_set_max_active_levels(0);
+    }
+    ~SerialOpenMp() { omp_set_max_active_levels(this->Levels); }
+    SerialOpenMp(const SerialOpenMp&) = delete;
+    SerialOpenMp& operator=(const SerialOpenMp&) = delete;
+
+  private:
+    int Levels;
+#else
+    SerialOpenMp() {}
+#endif
+  };
+
   static cholmod_sparse View(const SparseMatrix& lower)
   {
     cholmod_sparse view = {};
@@ -311,7 +339,8 @@ ConstrainedSolver::ConstrainedSolver(ConstrainedSolver&&) noexcept = default;
 ConstrainedSolver& ConstrainedSolver::operator=(ConstrainedSolver&&) noexcept = default;
 
 void ConstrainedSolver::Factorize(const SparseMatrix& matrix, const std::vector<char>& isFixed,
-  const Eigen::VectorXd& stiffness, const std::vector<int>& vertices, const ExecutionContext& context)
+  const Eigen::VectorXd& stiffness, const std::vector<int>& vertices,
+  const ExecutionContext& context)
 {
   RequireConstraints(matrix, isFixed, stiffness, vertices);
   context.Report(0.1);
