@@ -52,9 +52,10 @@ std::unique_ptr<cartan::SurfaceDeformer> vtkSimilarityDeformation::NewDeformer(
   options.ConstrainTransforms = this->ConstrainHandleTransforms;
   auto deformer = std::make_unique<cartan::SimilarityDeformer>(
     problem, options, backend, context.Part(0.0, 0.7));
-  // The second factorization belongs to the set-up, not to the first motion.
+  // The other factorizations belong to the set-up, not to the first motion.
   deformer->SetReconstruction(
     static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));
+  deformer->SetRefits(this->Refits);
   deformer->Prepare(context.Part(0.7, 1.0));
   return deformer;
 }

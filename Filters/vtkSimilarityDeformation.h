@@ -111,8 +111,9 @@ public:
   ///@{
   /**
    * How often rotations are fitted to the result and the surface is put
-   * together again, 0 to 1000; each costs a back-substitution. 3 help much
-   * where handles are translated. Without effect with AFFINE. Default: 0.
+   * together again, from edges, 0 to 1000; each costs a back-substitution. 3
+   * help much where handles are translated. Without effect with AFFINE. Default:
+   * 0.
    */
   vtkSetClampMacro(Refits, int, 0, 1000);
   vtkGetMacro(Refits, int);

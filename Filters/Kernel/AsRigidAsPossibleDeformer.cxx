@@ -199,11 +199,7 @@ void AsRigidAsPossibleDeformer::BuildCells()
     this->Rest.row(i) = this->Problem.Rest->row(this->Vertices[i]);
   }
   this->Current = this->Rest;
-  this->Rotations.resize(numberOfSites, 9);
-  for (Eigen::Index i = 0; i < numberOfSites; ++i)
-  {
-    MatrixAt(this->Rotations, i).setIdentity();
-  }
+  this->Rotations = Identities(numberOfSites);
   this->CellEnergies.setZero(this->CellCount);
   this->Residual.resize(this->System->NumberOfUnknowns(), 3);
 }
@@ -453,15 +449,7 @@ void AsRigidAsPossibleDeformer::Start(
   }
   else
   {
-    result.Positions = *this->Problem.Rest;
-    for (int v = 0; v < this->Problem.Mesh->NumberOfVertices(); ++v)
-    {
-      if (this->MovingHandles[v] >= 0)
-      {
-        result.Positions.row(v) =
-          HandleTarget(this->Problem, targets, v, this->MovingHandles[v]).transpose();
-      }
-    }
+    result.Positions = HandlePositions(this->Problem, targets, this->MovingHandles);
   }
   result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());
   for (int i = startsFromPrevious ? numberOfUnknowns : 0; i < this->CellCount; ++i)
@@ -478,9 +466,8 @@ void AsRigidAsPossibleDeformer::Start(
         auto rotation = MatrixAt(this->Rotations, cell);
         if (this->HoldsRotation[cell])
         {
-          rotation = ProjectOnRotations(targets.Transforms.rows()
-              ? Eigen::Matrix3d(MatrixAt(targets.Transforms, v))
-              : targets.Motions[this->MovingHandles[v]].Linear);
+          rotation =
+            ProjectOnRotations(HandleTransform(targets, v, this->MovingHandles[v]));
         }
         else if (isGuessed)
         {
@@ -573,9 +560,7 @@ void AsRigidAsPossibleDeformer::Deform(const HandleTargets& targets, bool wantTr
   }
   if (wantTransforms)
   {
-    result.Transforms.resize(this->Problem.Mesh->NumberOfVertices(), 9);
-    result.Transforms.rowwise() =
-      Eigen::Map<const Eigen::Matrix<double, 1, 9>>(Eigen::Matrix3d::Identity().eval().data());
+    result.Transforms = Identities(this->Problem.Mesh->NumberOfVertices());
     for (int cell = 0; cell < this->CellCount; ++cell)
     {
       result.Transforms.row(this->Vertices[cell]) = this->Rotations.row(cell);

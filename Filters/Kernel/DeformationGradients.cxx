@@ -227,7 +227,8 @@ void DeformationGradients::BuildRows(const TriangleMesh& mesh,
         for (const auto* entry = this->Gradients.Begin(row); entry != this->Gradients.End(row);
              ++entry)
         {
-          sum.push_back({ entry->Column, entry->Coefficient / static_cast<double>(lenders.size()) });
+          sum.push_back(
+            { entry->Column, entry->Coefficient / static_cast<double>(lenders.size()) });
         }
       }
       std::sort(sum.begin(), sum.end(),
@@ -299,10 +300,11 @@ void DeformationGradients::FindCoherentRows(
         }
       }
     }
+    this->Coherent[row].reserve(reached.size() - 1);
     for (std::size_t i = 1; i < reached.size(); ++i)
     {
-      const int other =
-        constraints.IsGiven[reached[i]] ? this->AddGivenRow(reached[i]) : this->RowOfVertex[reached[i]];
+      const int w = reached[i];
+      const int other = constraints.IsGiven[w] ? this->AddGivenRow(w) : this->RowOfVertex[w];
       if (other < 0)
       {
         continue;

@@ -4,6 +4,10 @@
 #include "ExecutionContext.h"
 #include "TriangleMesh.h"
 
+#include <algorithm>
+#include <functional>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 namespace cartan
@@ -50,6 +54,82 @@ struct SparseRows
     }
     return transposed;
   }
+};
+
+/// `count` rows; makeRange(begin, end, rows) appends those from begin to end - 1,
+/// in any order of the ranges and from any thread.
+template <typename Value>
+SparseRows<Value> MakeRows(int count, const ExecutionContext& context,
+  const std::function<void(int begin, int end, SparseRows<Value>& rows)>& makeRange)
+{
+  std::vector<std::pair<int, SparseRows<Value>>> parts;
+  std::mutex mutex;
+  context.For(count,
+    [&](int begin, int end)
+    {
+      SparseRows<Value> part;
+      makeRange(begin, end, part);
+      const std::lock_guard<std::mutex> lock(mutex);
+      parts.emplace_back(begin, std::move(part));
+    });
+  std::sort(parts.begin(), parts.end(),
+    [](const auto& a, const auto& b) { return a.first < b.first; });
+  SparseRows<Value> all;
+  for (auto& [begin, part] : parts)
+  {
+    if (begin == 0)
+    {
+      all = std::move(part);
+      continue;
+    }
+    for (int row = 0; row < part.Count(); ++row)
+    {
+      all.Offsets.push_back(all.Entries.size() + part.Offsets[row + 1]);
+    }
+    all.Entries.insert(all.Entries.end(), part.Entries.begin(), part.Entries.end());
+    part = {};
+  }
+  return all;
+}
+
+/// A row in the making: sums by column.
+template <typename Value>
+class RowSum
+{
+public:
+  explicit RowSum(int numberOfColumns)
+    : Values(numberOfColumns)
+    , LastRow(numberOfColumns, 0)
+  {
+  }
+
+  void Clear()
+  {
+    this->Touched.clear();
+    ++this->Row;
+  }
+
+  void Add(int column, const Value& value)
+  {
+    if (this->LastRow[column] == this->Row)
+    {
+      this->Values[column] += value;
+      return;
+    }
+    this->LastRow[column] = this->Row;
+    this->Values[column] = value;
+    this->Touched.push_back(column);
+  }
+
+  /// The columns that were added to, in the order of that.
+  std::vector<int>& Columns() { return this->Touched; }
+  const Value& At(int column) const { return this->Values[column]; }
+
+private:
+  std::vector<Value> Values;
+  std::vector<int> LastRow;
+  std::vector<int> Touched;
+  int Row = 0; // counts from 1: LastRow starts with 0
 };
 
 /// What is known of each vertex before deformation gradients are set up: #V each.
@@ -139,7 +219,8 @@ public:
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
     for (const auto* entry = this->Gradients.Begin(row); entry != this->Gradients.End(row); ++entry)
     {
-      gradient += values.row(entry->Column).transpose() * entry->Coefficient.transpose();
+      gradient += Eigen::Map<const Eigen::Vector3d>(values.row(entry->Column).data()) *
+        entry->Coefficient.transpose();
     }
     return gradient;
   }

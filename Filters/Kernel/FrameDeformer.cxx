@@ -71,9 +71,7 @@ void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   {
     if (this->Transforms.rows() == 0)
     {
-      this->Transforms.resize(this->Problem.Mesh->NumberOfVertices(), 9);
-      this->Transforms.rowwise() =
-        Eigen::Map<const Eigen::Matrix<double, 1, 9>>(Eigen::Matrix3d::Identity().eval().data());
+      this->Transforms = Identities(this->Problem.Mesh->NumberOfVertices());
     }
     this->ComputeTransforms(targets, context);
     context.Report(0.4);

@@ -121,6 +121,30 @@ Eigen::Vector3d HandleTarget(
   return targets.Motions[handle].Linear * rest + targets.Motions[handle].Translation;
 }
 
+Eigen::Matrix3d HandleTransform(const HandleTargets& targets, int vertex, int handle)
+{
+  if (handle < 0)
+  {
+    return Eigen::Matrix3d::Identity();
+  }
+  return targets.Transforms.rows() ? Eigen::Matrix3d(MatrixAt(targets.Transforms, vertex))
+                                   : targets.Motions[handle].Linear;
+}
+
+Points HandlePositions(
+  const HandleProblem& problem, const HandleTargets& targets, const std::vector<int>& moving)
+{
+  Points positions = *problem.Rest;
+  for (int v = 0; v < problem.Mesh->NumberOfVertices(); ++v)
+  {
+    if (moving[v] >= 0 && problem.Mesh->IsUsed(v))
+    {
+      positions.row(v) = HandleTarget(problem, targets, v, moving[v]).transpose();
+    }
+  }
+  return positions;
+}
+
 HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
   std::shared_ptr<const Eigen::VectorXd> edgeWeights, Hold hold, SolverBackend backend,
   const ExecutionContext& context)

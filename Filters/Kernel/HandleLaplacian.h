@@ -31,6 +31,15 @@ std::vector<int> MovingHandleOfVertices(const HandleProblem& problem);
 Eigen::Vector3d HandleTarget(
   const HandleProblem& problem, const HandleTargets& targets, int vertex, int handle);
 
+/// The linear map that such a vertex is to go through; the identity for -1.
+Eigen::Matrix3d HandleTransform(const HandleTargets& targets, int vertex, int handle);
+
+/// The rest positions with all vertices of moving handles where they are to go,
+/// also those that are held softly or not at all: #V x 3. `moving` is
+/// MovingHandleOfVertices.
+Points HandlePositions(
+  const HandleProblem& problem, const HandleTargets& targets, const std::vector<int>& moving);
+
 /// The Laplacian system on the free vertices that moving handles can reach, the
 /// held ones eliminated. It is factorized once and serves everything that is
 /// harmonic or nearly so: frames, angles and positions.
@@ -65,7 +74,10 @@ public:
     int Neighbor; ///< local
     double Weight;
   };
-  const Edge* EdgesBegin(int unknown) const { return this->Edges.data() + this->EdgeOffsets[unknown]; }
+  const Edge* EdgesBegin(int unknown) const
+  {
+    return this->Edges.data() + this->EdgeOffsets[unknown];
+  }
   const Edge* EdgesEnd(int unknown) const
   {
     return this->Edges.data() + this->EdgeOffsets[unknown + 1];

@@ -53,7 +53,6 @@ LaplacianDeformer::LaplacianDeformer(HandleProblem problem, LaplacianRotations r
   , ImplicitSolver(backend)
 {
   RequirePositions(this->Problem, "Laplacian editing");
-  this->Transforms.resize(this->Problem.Mesh->NumberOfVertices(), 9);
   this->FindRows();
   if (rotations == LaplacianRotations::Estimated)
   {
@@ -234,8 +233,7 @@ void LaplacianDeformer::SolveRotated(const HandleTargets& targets, Points& posit
 void LaplacianDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
-  this->Transforms.rowwise() =
-    Eigen::Map<const Eigen::Matrix<double, 1, 9>>(Eigen::Matrix3d::Identity().eval().data());
+  this->Transforms = Identities(this->Problem.Mesh->NumberOfVertices());
   if (this->Rotations == LaplacianRotations::Implicit)
   {
     result.Positions = this->System.Targets(targets);

@@ -193,7 +193,7 @@ EdgeLengthChange CompareEdgeLengths(const TriangleMesh& mesh, const Points& refe
 }
 
 Matrices FitRotations(const TriangleMesh& mesh, const Points& reference, const Points& current,
-  const ExecutionContext& context)
+  const ExecutionContext& context, const Eigen::VectorXd& edgeWeights)
 {
   const Points referenceNormals = VertexNormals(mesh, reference, context);
   const Points currentNormals = VertexNormals(mesh, current, context);
@@ -210,8 +210,9 @@ Matrices FitRotations(const TriangleMesh& mesh, const Points& reference, const P
           const int w = mesh.Neighbor(d);
           const Eigen::RowVector3d before = reference.row(w) - reference.row(v);
           const Eigen::RowVector3d after = current.row(w) - current.row(v);
-          covariance += after.transpose() * before;
-          size += before.norm() * after.norm();
+          const double weight = edgeWeights.size() ? edgeWeights[d] : 1.0;
+          covariance += weight * after.transpose() * before;
+          size += weight * before.norm() * after.norm();
         }
         // The edges of a flat ring, or of one whose edges are all but in line,
         // leave the rotation to rounding; the normal settles it.

@@ -57,9 +57,10 @@ EdgeLengthChange CompareEdgeLengths(const TriangleMesh& mesh, const Points& refe
 
 /// The rotation that takes the one-ring of each vertex in the reference closest
 /// to the current one, in the least-squares sense over edges and vertex
-/// normal: #V x 9. The identity at unused vertices.
+/// normal: #V x 9. The identity at unused vertices. Edges count alike, or by
+/// `edgeWeights` >= 0 (#D).
 Matrices FitRotations(const TriangleMesh& mesh, const Points& reference, const Points& current,
-  const ExecutionContext& context = {});
+  const ExecutionContext& context = {}, const Eigen::VectorXd& edgeWeights = {});
 
 /// The part of the enclosed volume that lies under each vertex, in the spirit
 /// of Lipman et al., Volume and Shape Preservation via Moving Frame

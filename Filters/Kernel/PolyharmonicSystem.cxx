@@ -53,16 +53,7 @@ Points PolyharmonicSystem::DifferentialCoordinates(const Points& points) const
 
 Points PolyharmonicSystem::Targets(const HandleTargets& targets) const
 {
-  Points positions = *this->Problem.Rest;
-  for (int v = 0; v < this->Problem.Mesh->NumberOfVertices(); ++v)
-  {
-    if (this->MovingHandles[v] >= 0 && this->Problem.Mesh->IsUsed(v))
-    {
-      positions.row(v) =
-        HandleTarget(this->Problem, targets, v, this->MovingHandles[v]).transpose();
-    }
-  }
-  return positions;
+  return HandlePositions(this->Problem, targets, this->MovingHandles);
 }
 
 void PolyharmonicSystem::Solve(const Points& rightHandSide, Points& values) const

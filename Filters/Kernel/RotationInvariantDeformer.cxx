@@ -66,9 +66,8 @@ void RotationInvariantDeformer::ComputeTransforms(
 
   for (const HandleVertex& held : this->HandleVertices)
   {
-    MatrixAt(this->Transforms, held.Vertex) = targets.Transforms.rows()
-      ? projected(MatrixAt(targets.Transforms, held.Vertex))
-      : projected(targets.Motions[held.Handle].Linear);
+    MatrixAt(this->Transforms, held.Vertex) =
+      projected(HandleTransform(targets, held.Vertex, held.Handle));
   }
 
   const HandleLaplacian& frames = *this->Frames;

@@ -13,10 +13,29 @@ namespace
 {
 constexpr double FullTurn = 2.0 * EIGEN_PI;
 
-double ConformalWeight(const Eigen::Ref<const Eigen::RowVectorXd>& eta)
+/// W_T, the sum over the corners of 1 / (4 + |eta|^2)^2.
+double ConformalWeight(const HandleLaplacian::Triangle& triangle, const Field& eta)
 {
-  const double denominator = 4.0 + eta.squaredNorm();
-  return 1.0 / (denominator * denominator);
+  double weight = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    const double denominator = 4.0 + eta.row(triangle.Corners[c]).squaredNorm();
+    weight += 1.0 / (denominator * denominator);
+  }
+  return weight;
+}
+
+/// sum over the edges of w |eta_a - eta_b|^2.
+double DirichletEnergy(const HandleLaplacian::Triangle& triangle, const Field& eta)
+{
+  double energy = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    const int a = triangle.Corners[(c + 1) % 3];
+    const int b = triangle.Corners[(c + 2) % 3];
+    energy += triangle.Weights[c] * (eta.row(a) - eta.row(b)).squaredNorm();
+  }
+  return energy;
 }
 }
 
@@ -40,10 +59,8 @@ Eigen::Vector3d ShapePreservingDeformer::RotationVector(
 Eigen::Matrix3d ShapePreservingDeformer::Stretch(
   const HandleTargets& targets, const HandleVertex& held) const
 {
-  const Eigen::Matrix3d linear = targets.Transforms.rows()
-    ? Eigen::Matrix3d(MatrixAt(targets.Transforms, held.Vertex))
-    : targets.Motions[held.Handle].Linear;
-  return RotationFromVector(this->RotationVector(targets, held)).transpose() * linear;
+  return RotationFromVector(this->RotationVector(targets, held)).transpose() *
+    HandleTransform(targets, held.Vertex, held.Handle);
 }
 
 Field ShapePreservingDeformer::Spread(const HandleTargets& targets, int components,
@@ -102,9 +119,8 @@ void ShapePreservingDeformer::ComputeTransforms(
   const HandleLaplacian& frames = *this->Frames;
   for (const HandleVertex& held : this->HandleVertices)
   {
-    MatrixAt(this->Transforms, held.Vertex) = targets.Transforms.rows()
-      ? Eigen::Matrix3d(MatrixAt(targets.Transforms, held.Vertex))
-      : targets.Motions[held.Handle].Linear;
+    MatrixAt(this->Transforms, held.Vertex) =
+      HandleTransform(targets, held.Vertex, held.Handle);
   }
 
   Eigen::Vector3d axis;
@@ -215,16 +231,7 @@ double ShapePreservingDeformer::Energy(const Field& eta) const
   double energy = 0.0;
   for (const HandleLaplacian::Triangle& triangle : this->Triangles)
   {
-    const Eigen::Vector3i& corners = triangle.Corners;
-    double weight = 0.0;
-    double dirichlet = 0.0;
-    for (int c = 0; c < 3; ++c)
-    {
-      weight += ConformalWeight(eta.row(corners[c]));
-      dirichlet += triangle.Weights[c] *
-        (eta.row(corners[(c + 1) % 3]) - eta.row(corners[(c + 2) % 3])).squaredNorm();
-    }
-    energy += weight * dirichlet;
+    energy += ConformalWeight(triangle, eta) * DirichletEnergy(triangle, eta);
   }
   return energy;
 }
@@ -280,14 +287,8 @@ Field ShapePreservingDeformer::Iterate(Field eta, const ExecutionContext& contex
     for (const HandleLaplacian::Triangle& triangle : this->Triangles)
     {
       const Eigen::Vector3i& corners = triangle.Corners;
-      double weight = 0.0;
-      double dirichlet = 0.0;
-      for (int c = 0; c < 3; ++c)
-      {
-        weight += ConformalWeight(eta.row(corners[c]));
-        dirichlet += triangle.Weights[c] *
-          (eta.row(corners[(c + 1) % 3]) - eta.row(corners[(c + 2) % 3])).squaredNorm();
-      }
+      const double weight = ConformalWeight(triangle, eta);
+      const double dirichlet = DirichletEnergy(triangle, eta);
       for (int c = 0; c < 3; ++c)
       {
         const int a = corners[(c + 1) % 3];

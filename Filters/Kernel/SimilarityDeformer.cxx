@@ -2,6 +2,7 @@
 #include "SimilarityDeformer.h"
 
 #include "Laplacian.h"
+#include "Measures.h"
 #include "Rotation.h"
 
 #include <Eigen/Eigenvalues>
@@ -18,16 +19,6 @@ namespace
 /// below any scale that features survive.
 constexpr double FlatDeterminant = 1e-12;
 
-Eigen::Matrix3d TargetTransform(const HandleTargets& targets, int vertex, int handle)
-{
-  if (handle < 0)
-  {
-    return Eigen::Matrix3d::Identity();
-  }
-  return targets.Transforms.rows() ? Eigen::Matrix3d(MatrixAt(targets.Transforms, vertex))
-                                   : targets.Motions[handle].Linear;
-}
-
 double Product(double a, double b)
 {
   return a * b;
@@ -37,23 +28,16 @@ double Product(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
   return a.dot(b);
 }
 
-/// Adds column `column` of left^T right to `values`, whose first touches are
-/// noted in `rows`; `leftColumns` is left by columns.
+/// Adds row `column` of left^T right to `sum`; `leftColumns` is left by columns.
 template <typename Value>
-void AddProductColumn(const SparseRows<Value>& leftColumns, const SparseRows<Value>& right,
-  int column, std::vector<double>& values, std::vector<int>& touchedBy, std::vector<int>& rows)
+void AddProductRow(const SparseRows<Value>& leftColumns, const SparseRows<Value>& right, int column,
+  RowSum<double>& sum)
 {
   for (const auto* left = leftColumns.Begin(column); left != leftColumns.End(column); ++left)
   {
     for (const auto* entry = right.Begin(left->Column); entry != right.End(left->Column); ++entry)
     {
-      if (touchedBy[entry->Column] != column)
-      {
-        touchedBy[entry->Column] = column;
-        values[entry->Column] = 0.0;
-        rows.push_back(entry->Column);
-      }
-      values[entry->Column] += Product(left->Coefficient, entry->Coefficient);
+      sum.Add(entry->Column, Product(left->Coefficient, entry->Coefficient));
     }
   }
 }
@@ -62,47 +46,38 @@ void AddProductColumn(const SparseRows<Value>& leftColumns, const SparseRows<Val
 /// columns. Entries between columns that are both beyond `numberOfFree` are
 /// left out: no solve reads them.
 SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& residuals,
-  const SparseRows<Eigen::Vector3d>& gradients, const SparseRows<Eigen::Vector3d>& differences)
+  const SparseRows<Eigen::Vector3d>& gradients, const SparseRows<Eigen::Vector3d>& differences,
+  const ExecutionContext& context)
 {
   const SparseRows<double> residualColumns = residuals.Transposed(size);
   const SparseRows<Eigen::Vector3d> gradientColumns = gradients.Transposed(size);
-  std::vector<double> values(size);
-  std::vector<int> touchedBy(size, -1);
-  std::vector<int> rows;
-  const auto addColumn = [&](int column)
-  {
-    rows.clear();
-    AddProductColumn(residualColumns, residuals, column, values, touchedBy, rows);
-    AddProductColumn(gradientColumns, differences, column, values, touchedBy, rows);
-    if (column >= numberOfFree)
+  const SparseRows<double> rows = MakeRows<double>(size, context,
+    [&](int begin, int end, SparseRows<double>& part)
     {
-      rows.erase(std::remove_if(rows.begin(), rows.end(),
-                   [numberOfFree](int row) { return row >= numberOfFree; }),
-        rows.end());
-    }
-  };
-
-  // Twice over the columns: growing the arrays would cost more than the sums.
+      RowSum<double> sum(size);
+      for (int row = begin; row < end; ++row)
+      {
+        sum.Clear();
+        AddProductRow(residualColumns, residuals, row, sum);
+        AddProductRow(gradientColumns, differences, row, sum);
+        std::sort(sum.Columns().begin(), sum.Columns().end());
+        for (const int column : sum.Columns())
+        {
+          if (row < numberOfFree || column < numberOfFree)
+          {
+            part.Add(column, sum.At(column));
+          }
+        }
+        part.FinishRow();
+      }
+    });
   SparseMatrix matrix(size, size);
-  int* offsets = matrix.outerIndexPtr();
-  offsets[0] = 0;
-  for (int column = 0; column < size; ++column)
+  matrix.resizeNonZeros(static_cast<Eigen::Index>(rows.Entries.size()));
+  std::copy(rows.Offsets.begin(), rows.Offsets.end(), matrix.outerIndexPtr());
+  for (std::size_t i = 0; i < rows.Entries.size(); ++i)
   {
-    addColumn(column);
-    offsets[column + 1] = offsets[column] + static_cast<int>(rows.size());
-  }
-  std::fill(touchedBy.begin(), touchedBy.end(), -1);
-  matrix.resizeNonZeros(offsets[size]);
-  for (int column = 0; column < size; ++column)
-  {
-    addColumn(column);
-    std::sort(rows.begin(), rows.end());
-    int next = offsets[column];
-    for (const int row : rows)
-    {
-      matrix.innerIndexPtr()[next] = row;
-      matrix.valuePtr()[next++] = values[row];
-    }
+    matrix.innerIndexPtr()[i] = rows.Entries[i].Column;
+    matrix.valuePtr()[i] = rows.Entries[i].Coefficient;
   }
   return matrix;
 }
@@ -146,9 +121,7 @@ SimilarityDeformer::SimilarityDeformer(HandleProblem problem, const Options& opt
     mesh, rest, constraints, std::max(1, options.CoherenceRings), context.Part(0.0, 0.3));
   this->FactorizeGradients(context.Part(0.3, 1.0));
 
-  this->Transforms.resize(mesh.NumberOfVertices(), 9);
-  this->Transforms.rowwise() =
-    Eigen::Map<const Eigen::Matrix<double, 1, 9>>(Eigen::Matrix3d::Identity().eval().data());
+  this->Transforms = Identities(mesh.NumberOfVertices());
   this->Scales.setOnes(mesh.NumberOfVertices());
 }
 
@@ -332,42 +305,37 @@ void SimilarityDeformer::FactorizeGradients(const ExecutionContext& context)
 
   // sum_i sum_j |M_i - M_j|^2 = sum_i M_i . 2 sum_j (M_i - M_j), as each pair
   // occurs in both orders.
-  SparseRows<Eigen::Vector3d> differences;
-  std::vector<int> touchedBy(size, -1);
-  std::vector<Eigen::Vector3d> values(size);
-  std::vector<int> columns;
-  for (int row = 0; row < rows.Count(); ++row)
-  {
-    columns.clear();
-    const auto add = [&](int other, double factor)
+  const SparseRows<Eigen::Vector3d> differences = MakeRows<Eigen::Vector3d>(rows.Count(), context,
+    [&](int begin, int end, SparseRows<Eigen::Vector3d>& part)
     {
-      for (const auto* entry = rows.Begin(other); entry != rows.End(other); ++entry)
+      RowSum<Eigen::Vector3d> sum(size);
+      const auto add = [&](int row, double factor)
       {
-        if (touchedBy[entry->Column] != row)
+        for (const auto* entry = rows.Begin(row); entry != rows.End(row); ++entry)
         {
-          touchedBy[entry->Column] = row;
-          values[entry->Column].setZero();
-          columns.push_back(entry->Column);
+          sum.Add(entry->Column, factor * entry->Coefficient);
         }
-        values[entry->Column] += factor * entry->Coefficient;
+      };
+      for (int row = begin; row < end; ++row)
+      {
+        sum.Clear();
+        const std::vector<int>& coherent = gradients.CoherentRows()[row];
+        add(row, 2.0 * static_cast<double>(coherent.size()));
+        for (const int other : coherent)
+        {
+          add(other, -2.0);
+        }
+        for (const int column : sum.Columns())
+        {
+          part.Add(column, sum.At(column));
+        }
+        part.FinishRow();
       }
-    };
-    const std::vector<int>& coherent = gradients.CoherentRows()[row];
-    add(row, 2.0 * static_cast<double>(coherent.size()));
-    for (const int other : coherent)
-    {
-      add(other, -2.0);
-    }
-    for (const int column : columns)
-    {
-      differences.Add(column, values[column]);
-    }
-    differences.FinishRow();
-  }
+    });
   context.Report(0.1);
 
   const SparseMatrix matrix =
-    NormalMatrix(size, gradients.NumberOfUnknowns(), residuals, rows, differences);
+    NormalMatrix(size, gradients.NumberOfUnknowns(), residuals, rows, differences, context);
   context.Report(0.3);
   std::vector<char> isFixed(size, 1);
   std::fill(isFixed.begin(), isFixed.begin() + gradients.NumberOfUnknowns(), 0);
@@ -391,7 +359,7 @@ void SimilarityDeformer::FactorizePositions(const ExecutionContext& context)
   const int size = gradients.NumberOfPositions();
   const SparseRows<double> laplacians = this->LaplacianRows();
   const SparseMatrix matrix =
-    NormalMatrix(size, gradients.NumberOfUnknowns(), laplacians, {}, {});
+    NormalMatrix(size, gradients.NumberOfUnknowns(), laplacians, {}, {}, context);
   std::vector<char> isFixed(size, 1);
   std::fill(isFixed.begin(), isFixed.begin() + gradients.NumberOfUnknowns(), 0);
   std::vector<int> vertices(size);
@@ -407,13 +375,14 @@ void SimilarityDeformer::FactorizePositions(const ExecutionContext& context)
 
 void SimilarityDeformer::Prepare(const ExecutionContext& context)
 {
-  const bool isEdgeForm = this->Reconstruction == SimilarityReconstruction::EdgeForm;
+  const bool needsEdges = this->Reconstruction == SimilarityReconstruction::EdgeForm ||
+    (this->Reconstruction == SimilarityReconstruction::LeastSquares && this->Refits > 0);
   if (this->Reconstruction == SimilarityReconstruction::LeastSquares &&
     !this->ArePositionsFactorized)
   {
     this->FactorizePositions(context);
   }
-  if (isEdgeForm && !this->Edges)
+  if (needsEdges && !this->Edges)
   {
     this->Edges =
       std::make_unique<EdgeForm>(this->Problem, this->Transforms, this->Backend, context);
@@ -427,10 +396,83 @@ int SimilarityDeformer::GetNumberOfFactorizations() const
     (this->Edges ? this->Edges->GetNumberOfFactorizations() : 0);
 }
 
+void SimilarityDeformer::SolveGradients(const HandleTargets& targets)
+{
+  const DeformationGradients& gradients = *this->Gradients;
+  Field rightHandSide = Field::Zero(gradients.NumberOfColumns(), 3);
+  for (int column = 0; column < gradients.NumberOfUnknowns(); ++column)
+  {
+    if (this->GradientStiffness[column] > 0.0)
+    {
+      const int v = gradients.Vertex(column);
+      rightHandSide.row(column) = this->GradientStiffness[column] *
+        HandleTarget(this->Problem, targets, v, this->MovingHandles[v]).transpose();
+    }
+  }
+  this->GradientSolver.Solve(rightHandSide, this->Values);
+}
+
+void SimilarityDeformer::ComputeDragFields()
+{
+  const DeformationGradients& gradients = *this->Gradients;
+  const int numberOfMoving = static_cast<int>(this->Problem.Moving.size());
+  // Handle k in its rest place and all others at the origin, then handle k all
+  // in one place.
+  Field rightHandSide = Field::Zero(gradients.NumberOfColumns(), 4 * numberOfMoving);
+  Field fields = rightHandSide;
+  for (int column = 0; column < gradients.NumberOfPositions(); ++column)
+  {
+    const int v = gradients.Vertex(column);
+    const int handle = this->MovingHandles[v];
+    if (handle < 0)
+    {
+      continue;
+    }
+    Eigen::RowVector4d target;
+    target << this->Problem.Rest->row(v), 1.0;
+    fields.block<1, 4>(column, 4 * handle) = target;
+    rightHandSide.block<1, 4>(column, 4 * handle) = this->GradientStiffness[column] * target;
+  }
+  int column = gradients.NumberOfPositions();
+  for (const int v : gradients.GivenVertices())
+  {
+    if (this->MovingHandles[v] >= 0)
+    {
+      fields.block<3, 3>(column, 4 * this->MovingHandles[v]).setIdentity();
+    }
+    column += 3;
+  }
+  this->GradientSolver.Solve(rightHandSide, fields);
+  this->DragFields = fields.topRows(gradients.NumberOfUnknowns());
+}
+
+void SimilarityDeformer::BlendDragFields(
+  const HandleTargets& targets, const ExecutionContext& context)
+{
+  const DeformationGradients& gradients = *this->Gradients;
+  context.For(gradients.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int column = begin; column < end; ++column)
+      {
+        // The motions' identities together leave the rest shape.
+        Eigen::Vector3d position =
+          gradients.DisplacedRest().row(gradients.Vertex(column)).transpose();
+        for (std::size_t k = 0; k < targets.Motions.size(); ++k)
+        {
+          const double* phi = this->DragFields.row(column).data() + 4 * k;
+          const Eigen::Map<const Eigen::Vector3d> along(phi);
+          position +=
+            targets.Motions[k].Linear * along - along + phi[3] * targets.Motions[k].Translation;
+        }
+        this->Values.row(column) = position.transpose();
+      }
+    });
+}
+
 void SimilarityDeformer::ReadTargets(const HandleTargets& targets)
 {
   const DeformationGradients& gradients = *this->Gradients;
-  this->Values.setZero();
   for (int column = gradients.NumberOfUnknowns(); column < gradients.NumberOfPositions(); ++column)
   {
     const int v = gradients.Vertex(column);
@@ -441,7 +483,7 @@ void SimilarityDeformer::ReadTargets(const HandleTargets& targets)
   for (const int v : gradients.GivenVertices())
   {
     this->Values.middleRows<3>(column) =
-      TargetTransform(targets, v, this->MovingHandles[v]).transpose();
+      HandleTransform(targets, v, this->MovingHandles[v]).transpose();
     column += 3;
   }
 }
@@ -458,17 +500,18 @@ void SimilarityDeformer::ComputeTransforms(
 {
   const DeformationGradients& gradients = *this->Gradients;
   this->ReadTargets(targets);
-  Field rightHandSide = Field::Zero(gradients.NumberOfColumns(), 3);
-  for (int column = 0; column < gradients.NumberOfUnknowns(); ++column)
+  if (targets.IsPerVertex())
   {
-    if (this->GradientStiffness[column] > 0.0)
-    {
-      const int v = gradients.Vertex(column);
-      rightHandSide.row(column) = this->GradientStiffness[column] *
-        HandleTarget(this->Problem, targets, v, this->MovingHandles[v]).transpose();
-    }
+    this->SolveGradients(targets);
   }
-  this->GradientSolver.Solve(rightHandSide, this->Values);
+  else
+  {
+    if (this->DragFields.rows() == 0)
+    {
+      this->ComputeDragFields();
+    }
+    this->BlendDragFields(targets, context);
+  }
   context.Report(0.6);
 
   const int numberOfVertices = this->Problem.Mesh->NumberOfVertices();
@@ -483,16 +526,19 @@ void SimilarityDeformer::ComputeTransforms(
         }
         else if (this->MovingHandles[v] >= 0)
         {
-          this->SetTransform(v, TargetTransform(targets, v, this->MovingHandles[v]));
+          this->SetTransform(v, HandleTransform(targets, v, this->MovingHandles[v]));
         }
       }
     });
 }
 
-void SimilarityDeformer::RefitTransforms(const Points& positions, const ExecutionContext& context)
+void SimilarityDeformer::RefitTransforms(
+  const Points& positions, bool goesBeyond, const ExecutionContext& context)
 {
   const TriangleMesh& mesh = *this->Problem.Mesh;
   const Points& rest = *this->Problem.Rest;
+  const Matrices fitted =
+    FitRotations(mesh, rest, positions, context, this->Edges->GetPositionWeights()->cwiseMax(0.0));
   context.For(mesh.NumberOfVertices(),
     [&](int begin, int end)
     {
@@ -502,23 +548,22 @@ void SimilarityDeformer::RefitTransforms(const Points& positions, const Executio
         {
           continue;
         }
-        // The rotation that minimizes what EdgeForm minimizes over positions,
-        // sum_j w_ij |v~_j - v~_i - R_i (v_j - v_i)|^2, so that re-fits cannot
-        // make that worse.
-        Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
         double before = 0.0;
         double after = 0.0;
         for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
         {
-          const Eigen::RowVector3d edge = rest.row(mesh.Neighbor(d)) - rest.row(v);
-          const Eigen::RowVector3d moved = positions.row(mesh.Neighbor(d)) - positions.row(v);
-          covariance += this->EdgeWeights[d] * moved.transpose() * edge;
-          before += edge.squaredNorm();
-          after += moved.squaredNorm();
+          before += (rest.row(mesh.Neighbor(d)) - rest.row(v)).squaredNorm();
+          after += (positions.row(mesh.Neighbor(d)) - positions.row(v)).squaredNorm();
         }
+        auto transform = MatrixAt(this->Transforms, v);
+        const Eigen::Matrix3d fit = MatrixAt(fitted, v);
+        const double size = transform.norm();
+        // F R^-1 F: from R to the fit F and as far again.
+        const Eigen::Matrix3d rotation = goesBeyond && size > 0.0
+          ? Eigen::Matrix3d(std::sqrt(3.0) / size * fit * transform.transpose() * fit)
+          : fit;
         this->Scales[v] = before > 0.0 ? std::sqrt(after / before) : 1.0;
-        MatrixAt(this->Transforms, v) =
-          (this->ScaleFeatures ? this->Scales[v] : 1.0) * ProjectOnRotations(covariance);
+        transform = (this->ScaleFeatures ? this->Scales[v] : 1.0) * rotation;
       }
     });
 }
@@ -593,15 +638,7 @@ void SimilarityDeformer::Reconstruct(
     this->Edges->Deform(targets, false, result, context);
     return;
   }
-  result.Positions = *this->Problem.Rest;
-  for (int v = 0; v < this->Problem.Mesh->NumberOfVertices(); ++v)
-  {
-    if (this->MovingHandles[v] >= 0)
-    {
-      result.Positions.row(v) =
-        HandleTarget(this->Problem, targets, v, this->MovingHandles[v]).transpose();
-    }
-  }
+  result.Positions = HandlePositions(this->Problem, targets, this->MovingHandles);
   if (this->Reconstruction == SimilarityReconstruction::Affine)
   {
     this->PullBack(result.Positions);
@@ -678,9 +715,11 @@ void SimilarityDeformer::Deform(const HandleTargets& targets, bool wantTransform
     for (int refit = 0; refit < this->Refits; ++refit)
     {
       const double begin = 0.6 + 0.4 * refit / this->Refits;
-      this->RefitTransforms(result.Positions, context);
-      this->Reconstruct(
-        targets, result, context.Part(begin, begin + 0.4 / this->Refits));
+      const bool isFromEdges =
+        refit > 0 || this->Reconstruction == SimilarityReconstruction::EdgeForm;
+      this->RefitTransforms(result.Positions, isFromEdges, context);
+      this->Edges->Deform(
+        targets, false, result, context.Part(begin, begin + 0.4 / this->Refits));
     }
   }
   result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());

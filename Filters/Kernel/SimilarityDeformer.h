@@ -37,13 +37,22 @@ enum class SimilarityReconstruction
 /// w^2 |v~_c - u_c|^2 / h_c^2 to the sum (and what FrameDeformer says with
 /// EdgeForm); w = 0 holds nothing.
 ///
+/// The minimum is linear in each handle's motion: v~ = v + sum_k [(A_k - I) phi_k
+/// + h_k t_k], with four numbers per vertex and handle, so that a drag solves
+/// nothing here. (Targets that differ from vertex to vertex are solved for.)
+///
 /// Then shear is removed: R_i is the rotation closest to M_i, s_i^2 the mean of
 /// its squared singular values (section 4), T_i = R_i or s_i R_i, and the
 /// surface is put together from T (SimilarityReconstruction). A similarity of
 /// all handles together is reproduced exactly with T_i = s_i R_i.
 ///
-/// Refits repeat the second half with the rotations that fit the result
-/// best; with EdgeForm these are steps of as-rigid-as-possible deformation.
+/// Refits fit rotations F to the result (FitRotations, with the weights of the
+/// edges) and put the surface together from edges again. One that starts from a
+/// result of rotations R in edge form goes beyond F, to F R^-1 F: successive
+/// over-relaxation by the factor 2, the largest that cannot diverge, since what
+/// the surface makes of R lies between R and the limit. The limit is close to the
+/// as-rigid-as-possible surface, whose rotations are fitted to edges alone, without
+/// the normal.
 ///
 /// Each of the two matrices is factorized once.
 class SimilarityDeformer : public SurfaceDeformer
@@ -72,7 +81,7 @@ public:
     this->Reconstruction = reconstruction;
   }
 
-  /// Factorizes the system of the reconstruction unless that was done before.
+  /// Factorizes the systems of the reconstruction and the re-fits unless that was done before.
   /// Deform() does so by itself.
   void Prepare(const ExecutionContext& context = {});
 
@@ -80,7 +89,7 @@ public:
   void SetScaleFeatures(bool scale) { this->ScaleFeatures = scale; }
 
   /// How often rotations are fitted to the result and the surface is put
-  /// together again; not with Affine. Default: 0.
+  /// together from edges again; not with Affine. Default: 0.
   void SetRefits(int refits) { this->Refits = refits; }
 
   void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
@@ -127,9 +136,13 @@ private:
   void FactorizePositions(const ExecutionContext& context);
 
   void ReadTargets(const HandleTargets& targets);
+  void SolveGradients(const HandleTargets& targets);
+  void ComputeDragFields();
+  void BlendDragFields(const HandleTargets& targets, const ExecutionContext& context);
   void SetTransform(int vertex, const Eigen::Matrix3d& gradient);
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context);
-  void RefitTransforms(const Points& positions, const ExecutionContext& context);
+  void RefitTransforms(
+    const Points& positions, bool goesBeyond, const ExecutionContext& context);
   void Reconstruct(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
   void PullBack(Points& positions) const;
@@ -148,6 +161,8 @@ private:
   ConstrainedSolver GradientSolver;
   Eigen::VectorXd GradientStiffness; ///< #columns
   Field Values;                      ///< #columns x 3
+  /// #unknown columns x 4 #Moving, see the class; empty until first needed.
+  Field DragFields;
 
   ConstrainedSolver PositionSolver;
   bool ArePositionsFactorized = false;

@@ -22,6 +22,13 @@ using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// stored as (b1, b2, N), a linear transformation A as (A e1, A e2, A e3).
 using Matrices = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
 
+/// `count` identities: count x 9.
+inline Matrices Identities(Eigen::Index count)
+{
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  return Eigen::Map<const Eigen::Matrix<double, 1, 9>>(identity.data()).replicate(count, 1);
+}
+
 /// Several scalars per vertex: #V x k, the k values of a vertex side by side.
 using Field = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
