@@ -3,8 +3,8 @@
 
 #include "Kernel/FrameDeformer.h"
 #include "Kernel/Measures.h"
+#include "Kernel/RayTree.h"
 #include "KernelBridge.h"
-#include "RayCasting.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -26,8 +26,11 @@ public:
     Entry& entry = this->EntryOf(problem);
     if (!entry.Model)
     {
+      const cartan::RayTree tree(problem.Mesh->GetTriangles(), *problem.Rest);
       entry.Model = std::make_shared<const cartan::VolumeModel>(cartan::MeasureVolumeModel(
-        *problem.Mesh, *problem.Rest, cartan::MakeRayCaster(*problem.Mesh, *problem.Rest),
+        *problem.Mesh, *problem.Rest,
+        [&tree](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
+        { return tree.FirstHit(from, direction); },
         context));
       cartan::Warn(filter, entry.Model->Warning);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ExecutionContext.h"
+#include "RayTree.h"
 #include "TriangleMesh.h"
 
 #include <functional>
@@ -12,13 +13,6 @@
 /// and Shape Preservation via Moving Frame Manipulation, 2007, section 4.
 namespace cartan
 {
-/// Where a ray first meets the surface.
-struct RayHit
-{
-  double Distance = -1.0; ///< in length units; negative: nowhere
-  int Triangle = -1;
-};
-
 /// Follows a ray from a point in a unit direction. Called from several threads.
 using RayCaster = std::function<RayHit(const Eigen::Vector3d&, const Eigen::Vector3d&)>;
 

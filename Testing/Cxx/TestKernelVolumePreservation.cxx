@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/VolumePreservation.h"
 
+#include "AllTriangles.h"
 #include "Kernel/FrameDeformer.h"
 #include "Kernel/Geometry.h"
 #include "Kernel/Measures.h"
@@ -23,44 +24,10 @@ namespace
 {
 const double HalfAngle = 15.0 * shapes::Pi / 180.0;
 
-/// The first of all triangles that a ray meets (Moeller and Trumbore), which is
-/// what a locator must find too.
-RayCaster CastThroughAll(const shapes::Shape& shape)
-{
-  return [shape](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
-  {
-    RayHit first;
-    for (Eigen::Index t = 0; t < shape.Faces.rows(); ++t)
-    {
-      const Eigen::Vector3d a = shape.Positions.row(shape.Faces(t, 0));
-      const Eigen::Vector3d u = shape.Positions.row(shape.Faces(t, 1)).transpose() - a;
-      const Eigen::Vector3d v = shape.Positions.row(shape.Faces(t, 2)).transpose() - a;
-      const Eigen::Vector3d p = direction.cross(v);
-      const double determinant = u.dot(p);
-      if (determinant == 0.0)
-      {
-        continue;
-      }
-      const Eigen::Vector3d w = from - a;
-      const Eigen::Vector3d q = w.cross(u);
-      const double s = w.dot(p) / determinant;
-      const double r = direction.dot(q) / determinant;
-      const double distance = v.dot(q) / determinant;
-      // Rays through an edge must not slip between its triangles.
-      if (s >= -1e-9 && r >= -1e-9 && s + r <= 1.0 + 1e-9 && distance >= 0.0 &&
-        (first.Distance < 0.0 || distance < first.Distance))
-      {
-        first = { distance, static_cast<int>(t) };
-      }
-    }
-    return first;
-  };
-}
-
 VolumeModel ModelOf(const shapes::Shape& shape, const ExecutionContext& context = {})
 {
   return MeasureVolumeModel(
-    shapes::MakeMesh(shape), shape.Positions, CastThroughAll(shape), context);
+    shapes::MakeMesh(shape), shape.Positions, shapes::CastThroughAll(shape), context);
 }
 
 /// The mean length of one ray along the axis of the cone and of six on it, for
@@ -380,7 +347,7 @@ TEST(LocalDepth, TakesSevenRaysPerVertex)
   const shapes::Shape sphere = shapes::Icosphere(2);
   const TriangleMesh mesh = shapes::MakeMesh(sphere);
   std::atomic<int> rays(0);
-  const RayCaster cast = CastThroughAll(sphere);
+  const RayCaster cast = shapes::CastThroughAll(sphere);
   MeasureVolumeModel(mesh, sphere.Positions,
     [&](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
     {
@@ -410,7 +377,7 @@ TEST(LocalDepth, IsFilledInHarmonicallyWhereNoRayLeaves)
   const double radius = 0.6;
   const shapes::Shape cylinder = ClosedCylinder(24, 40, 2, radius, 6.0);
   const TriangleMesh mesh = shapes::MakeMesh(cylinder);
-  const RayCaster cast = CastThroughAll(cylinder);
+  const RayCaster cast = shapes::CastThroughAll(cylinder);
   const VolumeModel model = MeasureVolumeModel(mesh, cylinder.Positions,
     [&](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
     { return std::abs(from[2]) < 1.0 ? RayHit() : cast(from, direction); });
@@ -535,7 +502,7 @@ struct Bar
     }
     this->Problem.Moving = { 2 };
     this->Problem.ConstrainPositions = constrainPositions;
-    const RayCaster cast = CastThroughAll(shape);
+    const RayCaster cast = shapes::CastThroughAll(shape);
     this->Model =
       std::make_shared<VolumeModel>(MeasureVolumeModel(*this->Problem.Mesh, shape.Positions,
         [this, cast](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
