@@ -59,6 +59,8 @@ void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
 {
   this->Warning.clear();
   result.Positions = *this->Problem.Rest;
+  // Not those of an earlier motion with another correction.
+  result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());
   // Softly held and unheld vertices among these are overwritten by the solve.
   for (const HandleVertex& held : this->HandleVertices)
   {
@@ -78,11 +80,9 @@ void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   }
   if (!isDirect)
   {
-    this->SolvePositions(targets, this->Transforms, result.Positions, context);
+    this->SolvePositions(targets, this->Transforms, result, context);
     context.Report(0.7);
   }
-  // Not those of an earlier motion with another correction.
-  result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());
   if (this->PreservesVolume())
   {
     if (this->Correction == VolumeCorrection::FrameScaling)
@@ -101,11 +101,51 @@ void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   context.Report(1.0);
 }
 
+/// sum over the triangles t of a vertex i and its edges in them of
+/// c_t,ij R_t (p_i - p_j).
+Eigen::Vector3d FrameDeformer::TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const Points& rest = *this->Problem.Rest;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int d = mesh.RingBegin(vertex); d < mesh.RingEnd(vertex); ++d)
+  {
+    const int t = mesh.LeftTriangle(d);
+    if (t < 0)
+    {
+      continue;
+    }
+    double scale = 0.0;
+    Eigen::RowVector3d edges = Eigen::RowVector3d::Zero();
+    for (int c = 0; c < 3; ++c)
+    {
+      const int corner = mesh.GetTriangles()(t, c);
+      const int other = mesh.GetTriangles()(t, (c + 1) % 3) == vertex
+        ? mesh.GetTriangles()(t, (c + 2) % 3)
+        : mesh.GetTriangles()(t, (c + 1) % 3);
+      scale += frameScale[corner] / 3.0;
+      if (corner != vertex)
+      {
+        edges += this->TriangleWeights(t, c) * (rest.row(vertex) - rest.row(other));
+      }
+    }
+    sum += scale * (MatrixAt(this->TriangleTransforms, t) * edges.transpose());
+  }
+  return sum;
+}
+
 void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices& transforms,
-  Points& positions, const ExecutionContext& context) const
+  DeformedSurface& result, const ExecutionContext& context)
 {
   const HandleLaplacian& system = *this->Positions;
   const Points& rest = *this->Problem.Rest;
+  Points& positions = result.Positions;
+  const bool isByTriangle = this->TriangleTransforms.rows() > 0;
+  if (isByTriangle && this->TriangleWeights.rows() == 0)
+  {
+    this->TriangleWeights = CornerWeights(
+      *this->Problem.Mesh, rest, this->Problem.PositionWeights, context);
+  }
   // Neutral offset: the target of an edge, R_mean (p_j - p_i), is what its two
   // ends make of it when each carries the middle of the body under it rigidly,
   //   (R_i + R_j)/2 (p_j - p_i) + (R_j - R_i) (o_i + o_j)/2,
@@ -125,12 +165,19 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
         const Eigen::Vector3d point = rest.row(v);
         const auto transform = MatrixAt(transforms, v);
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        if (isByTriangle)
+        {
+          sum = this->TriangleSum(v, result.FrameScale);
+        }
         for (const auto* edge = system.EdgesBegin(i); edge != system.EdgesEnd(i); ++edge)
         {
           const int w = system.Vertex(edge->Neighbor);
           const auto other = MatrixAt(transforms, w);
           const double half = 0.5 * edge->Weight;
-          sum += half * ((transform + other) * (point - rest.row(w).transpose()));
+          if (!isByTriangle)
+          {
+            sum += half * ((transform + other) * (point - rest.row(w).transpose()));
+          }
           if (offsets)
           {
             sum += half *
@@ -182,7 +229,7 @@ void FrameDeformer::ScaleFrames(
       scaled.row(v) *= result.FrameScale[v];
     }
   }
-  this->SolvePositions(targets, scaled, result.Positions, context);
+  this->SolvePositions(targets, scaled, result, context);
 }
 
 void FrameDeformer::CloseVolumes(Points& positions)

@@ -25,7 +25,9 @@ enum class VolumeCorrection
 ///   sum over directed edges of w_ij |x_j - x_i - R_i (p_j - p_i)|^2
 ///
 /// (Lipman et al., Linear Rotation-invariant Coordinates for Meshes, 2005,
-/// Eq. 5), that is L x = b with b_i = sum_j w_ij (R_i + R_j) (p_i - p_j) / 2.
+/// Eq. 5), that is L x = b with b_i = sum_j w_ij (R_i + R_j) (p_i - p_j) / 2. Where
+/// a method knows the change of each triangle t it is sum_t c_t,ij R_t (p_i - p_j)
+/// instead, c_t,ij what t adds to w_ij.
 class FrameDeformer : public SurfaceDeformer
 {
 public:
@@ -62,7 +64,8 @@ protected:
   };
 
   /// Writes into Transforms the linear map of each unknown of Frames and of
-  /// each vertex of HandleVertices.
+  /// each vertex of HandleVertices, and into TriangleTransforms those of
+  /// triangles where the method has them.
   virtual void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) = 0;
 
   /// A shortcut for methods whose positions need no solve: whether it served.
@@ -87,11 +90,15 @@ protected:
   std::vector<HandleVertex> HandleVertices;
   /// #V x 9, the identity where nothing moves; empty until first needed.
   Matrices Transforms;
+  /// Empty, or the maps of the triangles that take the place of R_i in the sum,
+  /// which is over the edges of each triangle then: #T x 9.
+  Matrices TriangleTransforms;
   std::string Warning;
 
 private:
-  void SolvePositions(const HandleTargets& targets, const Matrices& transforms, Points& positions,
-    const ExecutionContext& context) const;
+  void SolvePositions(const HandleTargets& targets, const Matrices& transforms,
+    DeformedSurface& result, const ExecutionContext& context);
+  Eigen::Vector3d TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const;
   void ScaleFrames(const HandleTargets& targets, DeformedSurface& result,
     const ExecutionContext& context);
   void CloseVolumes(Points& positions);
@@ -99,5 +106,6 @@ private:
   VolumeCorrection Correction = VolumeCorrection::None;
   bool Close = false;
   std::shared_ptr<const VolumeModel> Model;
+  Points TriangleWeights; ///< CornerWeights, empty until first needed
 };
 }

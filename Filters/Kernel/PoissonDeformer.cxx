@@ -61,10 +61,26 @@ Field GeodesicWeights(
 PoissonDeformer::PoissonDeformer(HandleProblem problem, Propagation propagation,
   SolverBackend backend, const ExecutionContext& context)
   : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.6))
-  , Weights(propagation == Propagation::Harmonic
-        ? this->Frames->HarmonicFields()
-        : GeodesicWeights(this->Problem, *this->Frames, context.Part(0.6, 1.0)))
 {
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const HandleLaplacian& frames = *this->Frames;
+  const Field ofLocals = propagation == Propagation::Harmonic
+    ? frames.HarmonicFields()
+    : GeodesicWeights(this->Problem, frames, context.Part(0.6, 1.0));
+  this->Weights.setZero(mesh.NumberOfVertices(), ofLocals.cols());
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    this->Weights(held.Vertex, held.Handle) = 1.0;
+  }
+  for (int i = 0; i < frames.NumberOfLocals(); ++i)
+  {
+    this->Weights.row(frames.Vertex(i)) = ofLocals.row(i);
+  }
+  for (const HandleLaplacian::Triangle& triangle : this->Positions->Triangles(this->Problem))
+  {
+    this->Triangles.push_back(triangle.Id);
+  }
+  this->TriangleTransforms = Identities(mesh.NumberOfTriangles());
   context.Report(1.0);
 }
 
@@ -83,12 +99,26 @@ void PoissonDeformer::ComputeTransforms(
   }
   const MotionBlend blend(targets.Motions);
   const HandleLaplacian& frames = *this->Frames;
+  context.For(static_cast<int>(this->Triangles.size()),
+    [&](int begin, int end)
+    {
+      Eigen::RowVectorXd weights(this->Weights.cols());
+      for (int i = begin; i < end; ++i)
+      {
+        const auto corners = this->Problem.Mesh->GetTriangles().row(this->Triangles[i]);
+        weights = (this->Weights.row(corners[0]) + this->Weights.row(corners[1]) +
+                    this->Weights.row(corners[2])) /
+          3.0;
+        MatrixAt(this->TriangleTransforms, this->Triangles[i]) = blend.At(weights.data());
+      }
+    });
   context.For(frames.NumberOfUnknowns(),
     [&](int begin, int end)
     {
       for (int i = begin; i < end; ++i)
       {
-        MatrixAt(this->Transforms, frames.Vertex(i)) = blend.At(this->Weights.row(i).data());
+        const int v = frames.Vertex(i);
+        MatrixAt(this->Transforms, v) = blend.At(this->Weights.row(v).data());
       }
     });
 }

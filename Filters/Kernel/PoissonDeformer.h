@@ -16,9 +16,9 @@ enum class Propagation
 /// 2005; Sorkine, Differential Representations for Mesh Processing, 2006,
 /// section 4.3): the handles' linear maps are blended with the identity, each
 /// gradient of the coordinates is transformed, and the positions fit the
-/// transformed gradients best. On edges instead of gradients, a gradient's
-/// transformation being the mean of its triangle's corners', this is the
-/// position system of FrameDeformer with cotangent weights.
+/// transformed gradients best. With cotangent weights this is the position system
+/// of FrameDeformer with a map per triangle, that of the mean of the weights at
+/// its corners.
 ///
 /// Geodesic weights fall with the distances d_k from the moving handles and d_0
 /// from the pinned ones: w_k = d_k^-1 / (d_0^-1 + sum_j d_j^-1).
@@ -32,6 +32,8 @@ protected:
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
 
 private:
-  Field Weights; ///< #locals x #Moving
+  Field Weights; ///< #V x #Moving
+  /// Those around unknown positions.
+  std::vector<int> Triangles;
 };
 }

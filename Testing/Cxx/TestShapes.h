@@ -282,8 +282,11 @@ inline Shape Ellipsoid(int level, const Eigen::Vector3d& halfAxes)
 
 /// A closed bar of lengths `size` with its bottom in the plane z = 0, centred
 /// about the z axis, of nx x ny x nz quads, each split in two. Corners and
-/// edges are shared, so the surface is one closed component.
-inline Shape Bar(int nx, int ny, int nz, const Eigen::Vector3d& size)
+/// edges are shared, so the surface is one closed component. The quads'
+/// diagonals are parallel, or alternate like the fields of a chessboard: a bar
+/// that does not prefer a sense of turning.
+inline Shape Bar(
+  int nx, int ny, int nz, const Eigen::Vector3d& size, bool alternatesDiagonals = false)
 {
   const Eigen::Vector3i count(nx, ny, nz);
   std::vector<int> ids(static_cast<std::size_t>(nx + 1) * (ny + 1) * (nz + 1), -1);
@@ -324,8 +327,9 @@ inline Shape Bar(int nx, int ny, int nz, const Eigen::Vector3d& size)
           const int b = far ? corner(1, 0) : corner(0, 1);
           const int c = corner(1, 1);
           const int d = far ? corner(0, 1) : corner(1, 0);
-          faces.emplace_back(a, b, c);
-          faces.emplace_back(a, c, d);
+          const bool isOther = alternatesDiagonals && (i + j) % 2 == 1;
+          faces.emplace_back(a, b, isOther ? d : c);
+          faces.emplace_back(isOther ? b : a, c, d);
         }
       }
     }
