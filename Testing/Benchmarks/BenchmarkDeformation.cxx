@@ -529,16 +529,16 @@ void PrintTable(const Collector& results, const std::vector<Case>& cases)
       {
         continue;
       }
-      const double seconds = results.Seconds(motion, which.IsThreaded);
-      PrintRow(std::string(preservation.Name) + " motion, filter", "", 1e3 * seconds, "ms");
+      const double ofMotion = results.Seconds(motion, which.IsThreaded);
+      PrintRow(std::string(preservation.Name) + " motion, filter", "", 1e3 * ofMotion, "ms");
       if (motion == shape && isTarget && results.Has(peer))
       {
-        const double ratio = seconds / results.Seconds(peer, which.IsThreaded);
+        const double ratio = ofMotion / results.Seconds(peer, which.IsThreaded);
         PrintRow("  ratio to CGAL's iteration", "<= 0.33", ratio, "", ratio <= 1.0 / 3.0);
       }
       else if (motion != shape && results.Has(shape))
       {
-        const double ratio = seconds / results.Seconds(shape, which.IsThreaded);
+        const double ratio = ofMotion / results.Seconds(shape, which.IsThreaded);
         PrintRow("  ratio to the motion without", "<= 4", ratio, "", ratio <= 4.0);
       }
     }
