@@ -110,7 +110,7 @@ DiscreteFormsMorph::DiscreteFormsMorph(const KeyFrames& keys, Transitions transi
       }
       edgeTransitions.push_back(std::move(ofEdges));
     }
-    this->KnownFrames[this->Parameters[k]] = frames;
+    this->Known.AddKey(this->Parameters[k], frames);
     part.Report(1.0);
   }
   this->Forms = KeyInterpolation(this->Parameters, std::move(forms));
@@ -135,7 +135,6 @@ DiscreteFormsMorph::DiscreteFormsMorph(const KeyFrames& keys, Transitions transi
     }
     this->FromMean = KeyInterpolation(this->Parameters, std::move(fromMean));
   }
-  this->LastParameter = this->Parameters.front();
 }
 
 DiscreteForms DiscreteFormsMorph::FormsAt(double t, const ExecutionContext& context) const
@@ -209,18 +208,15 @@ Matrices DiscreteFormsMorph::FramesAt(
   // From the nearest parameter whose frames are known, and where that is too far,
   // by way of parameters in between.
   constexpr int parts = 8;
-  const auto nearest = std::min_element(this->KnownFrames.begin(), this->KnownFrames.end(),
-    [t](const auto& a, const auto& b) { return std::abs(a.first - t) < std::abs(b.first - t); });
-  const double from = nearest->first;
-  const Matrices start = nearest->second;
-  Matrices frames = start;
+  const FrameMemory::Known start = this->Known.Nearest(t);
+  Matrices frames = start.Frames;
   bool isConverged = this->Average(edgeTransitions, frames, context);
   if (!isConverged)
   {
-    frames = start;
+    frames = start.Frames;
     for (int part = 1; part < parts; ++part)
     {
-      const double between = from + (t - from) * part / parts;
+      const double between = start.Parameter + (t - start.Parameter) * part / parts;
       this->Average(
         this->EdgeTransitionsAt(between, this->FormsAt(between, context), context), frames,
         context);
@@ -246,14 +242,7 @@ Points DiscreteFormsMorph::Evaluate(double t, const ExecutionContext& context)
   const Matrices edgeTransitions = this->EdgeTransitionsAt(t, forms, context);
   Matrices frames = this->FramesAt(t, edgeTransitions, context.Part(0.1, 0.7));
 
-  const bool isKey = std::find(this->Parameters.begin(), this->Parameters.end(),
-                       this->LastParameter) != this->Parameters.end();
-  if (!isKey)
-  {
-    this->KnownFrames.erase(this->LastParameter);
-  }
-  this->KnownFrames.emplace(t, frames);
-  this->LastParameter = t;
+  this->Known.SetLast(t, frames);
 
   if (this->Solver != FrameSolver::RotationAveraging)
   {

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "DiscreteForms.h"
+#include "FrameMemory.h"
 #include "KeyInterpolation.h"
 #include "RotationAveraging.h"
 #include "SurfaceMorph.h"
 
-#include <map>
 
 namespace cartan
 {
@@ -77,8 +77,7 @@ private:
   std::shared_ptr<ConstrainedSolver> Laplacian;
   std::unique_ptr<RotationAveraging> Averaging;
   ConstrainedSolver FrameSystem; // of FrameSolver::Direct
-  std::map<double, Matrices> KnownFrames; // of the key frames and the last parameter
-  double LastParameter = 0.0;
+  FrameMemory Known;
   int Iterations = 0;
   std::string Warning;
 };

@@ -80,9 +80,6 @@ double HalfCotangent(const Layouts& layouts, int t, int corner)
 std::unique_ptr<RotationAveraging> HingeAveraging(const HingeTopology& topology,
   const std::vector<char>& isHeld, const ExecutionContext& context)
 {
-  // Triangles that fold over, where a surface passes through itself, have angles
-  // that mean nothing to their neighbours.
-  constexpr double scale = 0.5;
   const int numberOfHinges = topology.NumberOfHinges();
   Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> arcs(numberOfHinges, 2);
   std::vector<RotationAveraging::Edge> edges;
@@ -97,7 +94,7 @@ std::unique_ptr<RotationAveraging> HingeAveraging(const HingeTopology& topology,
                          Eigen::VectorXd::Ones(numberOfHinges)),
     isHeld, {}, {}, context);
   return std::make_unique<RotationAveraging>(
-    topology.NumberOfTriangles(), std::move(edges), std::move(laplacian), scale);
+    topology.NumberOfTriangles(), std::move(edges), std::move(laplacian));
 }
 
 IsometricMorph::IsometricMorph(const KeyFrames& keys, const IsometricMorphOptions& options,
@@ -202,6 +199,13 @@ void IsometricMorph::SetUpStitching(const ExecutionContext& context)
   {
     this->Averaging =
       HingeAveraging(this->Topology, isHeldTriangle, context.Part(0.0, 0.5));
+    for (const double t : this->KeyLengths.GetParameters())
+    {
+      const Layouts layouts = LayOut(this->Topology, this->KeyLengths.Evaluate(t), context);
+      this->Known.AddKey(t,
+        WalkFrames(this->Topology, this->Forest,
+          HingeTransitions(this->Topology, layouts, this->KeyAngles.Evaluate(t), context)));
+    }
   }
 
   const Layouts layouts =
@@ -234,9 +238,12 @@ Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
   const Matrices transitions =
     HingeTransitions(this->Topology, layouts, this->KeyAngles.Evaluate(t, context), context);
   Matrices frames = WalkFrames(this->Topology, this->Forest, transitions);
-  this->FrameSteps = this->Averaging
-    ? this->Averaging->Improve(transitions, frames, context.Part(0.1, 0.6)).Steps
-    : 0;
+  this->FrameSteps = 0;
+  this->Warning.clear();
+  if (this->Averaging)
+  {
+    this->Average(t, transitions, frames, context.Part(0.1, 0.6));
+  }
 
   Points points = Points::Zero(this->Topology.NumberOfVertices, 3);
   this->Place(layouts, frames, points);
@@ -246,6 +253,31 @@ Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
     this->Polish(lengths, points, context.Part(0.7, 1.0));
   }
   return points;
+}
+
+void IsometricMorph::Average(
+  double t, const Matrices& transitions, Matrices& frames, const ExecutionContext& context)
+{
+  // A walk adds up the errors of all hinges on its way. Frames of another
+  // parameter are off by less, the more so on twists of several laps.
+  const FrameMemory::Known start = this->Known.Nearest(t);
+  for (int triangle = 0; triangle < this->Topology.NumberOfTriangles(); ++triangle)
+  {
+    if (!this->Forest.IsWhole[this->Forest.Tree[triangle]])
+    {
+      frames.row(triangle) = start.Frames.row(triangle);
+    }
+  }
+  const RotationAveraging::Result result = this->Averaging->Improve(transitions, frames, context);
+  this->FrameSteps = result.Steps;
+  // What nobody sees is not worth a warning.
+  if (!(result.LastTurn < 1e-3))
+  {
+    this->Warning = "The frames at the parameter " + std::to_string(t) +
+      " are not the best: their improvement did not end. The surface passes through itself, or "
+      "the key frames are far from each other; add one in between.";
+  }
+  this->Known.SetLast(t, frames);
 }
 
 void IsometricMorph::Place(const Layouts& layouts, const Matrices& frames, Points& points) const

@@ -3,6 +3,7 @@
 
 #include "ConstrainedSolver.h"
 #include "DualForest.h"
+#include "FrameMemory.h"
 #include "Hinges.h"
 #include "KeyInterpolation.h"
 #include "RotationAveraging.h"
@@ -101,11 +102,14 @@ public:
 
   /// How many steps the frames took in the last Evaluate.
   int GetNumberOfIterations() const override { return this->FrameSteps; }
+  std::string GetWarning() const override { return this->Warning; }
 
 private:
   void Interpolate(const std::vector<Points>& keys, std::vector<double> parameters,
     const ExecutionContext& context);
   void SetUpStitching(const ExecutionContext& context);
+  void Average(
+    double t, const Matrices& transitions, Matrices& frames, const ExecutionContext& context);
   void Place(const Layouts& layouts, const Matrices& frames, Points& points) const;
   void Stitch(const Layouts& layouts, const Matrices& frames, Points& points) const;
   void Polish(
@@ -126,6 +130,8 @@ private:
   TriangleStitching Stitching;
   std::unique_ptr<RotationAveraging> Averaging;
   ConstrainedSolver PolishSolver; // its analysis lasts
+  FrameMemory Known;
   int FrameSteps = 0;
+  std::string Warning;
 };
 }

@@ -67,10 +67,9 @@ private:
 }
 
 RotationAveraging::RotationAveraging(int numberOfNodes, std::vector<Edge> edges,
-  std::shared_ptr<const ConstrainedSolver> laplacian, double scale)
+  std::shared_ptr<const ConstrainedSolver> laplacian)
   : NodeCount(numberOfNodes)
   , Edges(std::move(edges))
-  , Scale(scale)
   , Laplacian(std::move(laplacian))
 {
 }
@@ -78,7 +77,7 @@ RotationAveraging::RotationAveraging(int numberOfNodes, std::vector<Edge> edges,
 RotationAveraging::Result RotationAveraging::Improve(
   const Matrices& transitions, Matrices& frames, const ExecutionContext& context) const
 {
-  constexpr double tolerance = 1e-9;
+  constexpr double tolerance = 1e-8;
   // Turns add up like vectors, as the acceleration has it, while they are small.
   constexpr double small = 0.3;
   Acceleration acceleration;
@@ -97,10 +96,7 @@ RotationAveraging::Result RotationAveraging::Improve(
           residuals.row(e).setZero();
           if (!misfit.isZero(0.0))
           {
-            // Half of the derivative of a^2 / (1 + a^2 / s^2).
-            const Eigen::Vector3d turn = VectorFromRotation(misfit);
-            const double factor = 1.0 + turn.squaredNorm() / (this->Scale * this->Scale);
-            residuals.row(e) = turn.transpose() / (factor * factor);
+            residuals.row(e) = VectorFromRotation(misfit).transpose();
           }
         }
       });

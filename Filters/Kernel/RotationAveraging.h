@@ -3,7 +3,6 @@
 
 #include "ConstrainedSolver.h"
 
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -12,19 +11,15 @@ namespace cartan
 /// The frames on the nodes of a graph that fit given transitions over its edges
 /// best,
 ///
-///   min over rotations F of sum a^2 / (1 + a^2 / s^2),
-///   a the angle of F_from C F_to^T,
+///   min over rotations F of sum |log(F_from C F_to^T)|^2,
 ///
-/// where the transitions C, interpolated say, fit together nowhere exactly. With
-/// s infinite it is the sum of squares. With a finite scale s an edge that fits
-/// its surroundings not at all, as where a surface passes through itself, does
-/// not spoil them, but there may be several minima. To first order in small turns
-/// v of all frames the sum is that of |log(F_from C F_to^T) + v_from - v_to|^2, so
-/// each step is a linear system with the graph's Laplacian, which does not depend
-/// on C (Govindu, Lie-Algebraic Averaging for Globally Consistent Motion
-/// Estimation, 2004; the function of a is Geman and McClure's). The frames stay
-/// rotations; those of the linear problem min sum |F_from C - F_to|^2 shrink where
-/// transitions disagree.
+/// where the transitions C, interpolated say, fit together nowhere exactly. To
+/// first order in small turns v of all frames a term is
+/// |log(F_from C F_to^T) + v_from - v_to|^2, so each step is a linear system with
+/// the graph's Laplacian, which does not depend on C (Govindu, Lie-Algebraic
+/// Averaging for Globally Consistent Motion Estimation, 2004). The frames stay
+/// rotations; those of the linear problem min sum |F_from C - F_to|^2 shrink
+/// where transitions disagree.
 class RotationAveraging
 {
 public:
@@ -35,11 +30,9 @@ public:
   };
 
   /// `laplacian` is factorized: the matrix sum (v_from - v_to)^2, with a fixed
-  /// node in each component at least. Frames of fixed nodes are kept. `scale` is
-  /// s, in radians.
+  /// node in each component at least. Frames of fixed nodes are kept.
   RotationAveraging(int numberOfNodes, std::vector<Edge> edges,
-    std::shared_ptr<const ConstrainedSolver> laplacian,
-    double scale = std::numeric_limits<double>::infinity());
+    std::shared_ptr<const ConstrainedSolver> laplacian);
 
   struct Result
   {
@@ -48,7 +41,7 @@ public:
   };
 
   /// Improves `frames` (#nodes x 9). `transitions` is #edges x 9; zero ones are
-  /// left out. Stops when a step turns no frame by more than 1e-9, or after
+  /// left out. Stops when a step turns no frame by more than 1e-8, or after
   /// MaximumSteps: where gross misfits make it slow, the rest has long settled
   /// then. The steps are the same for the same transitions
   /// in any place, and for those of the reversed motion.
@@ -62,7 +55,6 @@ public:
 private:
   int NodeCount;
   std::vector<Edge> Edges;
-  double Scale;
   std::shared_ptr<const ConstrainedSolver> Laplacian;
 };
 }

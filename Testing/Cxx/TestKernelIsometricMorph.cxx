@@ -312,7 +312,7 @@ TEST(IsometricMorph, OfRealMeshesReturnsTheKeyFrames)
     shapes::ShowFigure(std::string(name) + ", edge rms", EdgeErrors(morph, 0.5, middle).Rms);
     shapes::ShowFigure(std::string(name) + ", steps of frames", morph.GetNumberOfIterations());
     // Half of the bend, done directly, is the same but for the stretch of bending.
-    EXPECT_LT(ShapeDistance(mesh, middle, BentAlongLongestSide(shape.Positions, 0.25 * Pi)), 0.02);
+    EXPECT_LT(ShapeDistance(mesh, middle, BentAlongLongestSide(shape.Positions, 0.25 * Pi)), 0.03);
   }
 }
 
@@ -395,9 +395,8 @@ TEST(IsometricMorph, OfTheSameSurfaceIsTheSurface)
 
 TEST(IsometricMorph, FramesAreAMinimumOfTheirSum)
 {
-  // No small turn of any frame makes the sum of squared angles less (they are
-  // small enough here for it to be one),
-  // and it is close to the least eigenvalue's of sum |B_left Q - B_right|^2 over
+  // No small turn of any frame makes the sum of squared angles less, and it is
+  // close to the least eigenvalue's of sum |B_left Q - B_right|^2 over
   // all matrices B, which no rotations can undercut.
   const Shape tube = shapes::OpenCylinder(8, 10, 1.0, 5.0);
   const Points bent = Bent(tube.Positions, 1.0, 4.0, 2.0);

@@ -3,6 +3,7 @@
 #include "Kernel/DiscreteFormsMorph.h"
 #include "Kernel/FrameReconstruction.h"
 #include "Kernel/Geometry.h"
+#include "Kernel/IsometricMorph.h"
 #include "Kernel/Measures.h"
 #include "Kernel/MorphVolume.h"
 #include "Kernel/RigidPlacement.h"
@@ -52,6 +53,8 @@ std::vector<Method> Methods()
     { "forms", forms(Transitions::Forms, Solver::RotationAveraging) },
     { "conjugate gradients", forms(Transitions::Rotations, Solver::ConjugateGradients) },
     { "direct", forms(Transitions::Forms, Solver::Direct) },
+    { "isometric", [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
+      { return std::make_unique<cartan::IsometricMorph>(keys); } },
     { "deformation gradient", [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
       { return std::make_unique<DeformationGradientMorph>(keys); }, false },
   };
@@ -349,6 +352,13 @@ TEST(DiscreteFormsMorph, KeepsVolumeAndEdgesThroughOneAndAHalfLaps)
   EXPECT_LT(worstVolume, 0.07);
   EXPECT_LT(worstEdges, 0.035);
   EXPECT_LT(worstClosedEdges, 0.04);
+  cartan::IsometricMorph isometric(keys);
+  const MorphFigures byHinges = MeasureMorph(keys, isometric.Evaluate(0.5, {}), 0.5);
+  ShowFigure("isometric, volume", byHinges.Volume);
+  ShowFigure("isometric, edges", byHinges.EdgeRms);
+  EXPECT_NEAR(byHinges.Volume, 1.0, 0.07);
+  EXPECT_LT(byHinges.EdgeRms, 0.035);
+  EXPECT_EQ(isometric.GetWarning(), "");
   const Points middle = 0.5 * (keys.Positions[0] + keys.Positions[1]);
   EXPECT_LT(MeasureMorph(keys, middle, 0.5).Volume, 0.55); // what linear interpolation makes
 }
