@@ -67,7 +67,10 @@ public:
   bool IsUsed(int v) const { return this->RingEnd(v) > this->RingBegin(v); }
 
   /// Whether v is on the boundary; false for unused vertices.
-  bool IsBoundary(int v) const { return this->IsUsed(v) && this->RingTriangles[this->RingEnd(v) - 1] < 0; }
+  bool IsBoundary(int v) const
+  {
+    return this->IsUsed(v) && this->RingTriangles[this->RingEnd(v) - 1] < 0;
+  }
 
   /// The component of v, numbered from 0 in the order of their first vertices;
   /// -1 for unused vertices.
