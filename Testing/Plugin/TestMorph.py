@@ -78,6 +78,12 @@ check(curvature.MeanCurvatureErrorRMS == 0.0, "no curvature error at first")
 curvature.UpdatePipeline(1.0)
 curvature.UpdatePropertyInformation()
 check(curvature.MeanCurvatureErrorRMS > 0.0, "curvature error at last")
+table = simple.PlotDataOverTime(Input=curvature, FieldAssociation="Points",
+                                OnlyReportSelectionStatistics=1)
+table.UpdatePipeline()
+found = simple.servermanager.Fetch(table).GetBlock(0)
+largest = [found.GetColumnByName("max(MeanCurvatureError)").GetValue(step) for step in range(5)]
+check(largest[0] == 0.0 and largest[-1] > 0.0, "curvature over time: %s" % largest)
 
 # Play, and save as pictures.
 view = simple.CreateRenderView(ViewSize=[200, 150])
