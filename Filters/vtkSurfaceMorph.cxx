@@ -5,7 +5,6 @@
 #include "Kernel/DiscreteFormsMorph.h"
 #include "Kernel/IsometricMorph.h"
 #include "Kernel/LinearMorph.h"
-#include "Kernel/Measures.h"
 #include "Kernel/MorphVolume.h"
 #include "Kernel/RigidPlacement.h"
 #include "SurfacePair.h"
@@ -22,8 +21,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTimerLog.h"
 #include "vtkWeakPointer.h"
-
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -51,24 +48,8 @@ std::pair<int, int> WindowAt(double t, const std::vector<double>& parameters)
   {
     return { 0, count };
   }
-  const auto after = std::upper_bound(parameters.begin() + 1, parameters.end() - 1, t);
-  const int before = static_cast<int>(after - parameters.begin()) - 1;
+  const int before = cartan::PlaceBetweenKeys(t, parameters).Before;
   return { std::max(before - 1, 0), std::min(before + 3, count) };
-}
-
-/// Where t lies between two of the parameters: t = (1 - Part) at the first + Part
-/// at the second; Part is beyond [0, 1] outside of all.
-struct Place
-{
-  std::size_t Before;
-  double Part;
-};
-Place PlaceOf(double t, const std::vector<double>& parameters)
-{
-  const auto after = std::upper_bound(parameters.begin() + 1, parameters.end() - 1, t);
-  const auto before = static_cast<std::size_t>(after - parameters.begin()) - 1;
-  return { before,
-    (t - parameters[before]) / (parameters[before + 1] - parameters[before]) };
 }
 
 bool IsBlockOf(vtkCompositeDataSet* composite, vtkPolyData* surface)
@@ -140,67 +121,22 @@ void InterpolatePointData(const std::vector<vtkPolyData*>& keys,
   }
 }
 
-/// 1 at the handle points of the first key frame. Throws where they determine no
-/// place.
-Eigen::VectorXd HandleWeights(
-  vtkPolyData* first, const std::string& name, const cartan::KeyFrames& keys)
+/// Which points of the first key frame are in a handle. Throws if none is.
+std::vector<char> ReadPinned(vtkPolyData* first, const std::string& name)
 {
-  const cartan::TriangleMesh& mesh = *keys.Mesh;
   vtkDataArray* array = cartan::RequirePointArray(first, name, 1);
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
-  std::vector<std::vector<int>> held(mesh.NumberOfComponents());
-  bool isAny = false;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  std::vector<char> isPinned(first->GetNumberOfPoints());
+  for (std::size_t v = 0; v < isPinned.size(); ++v)
   {
-    if (mesh.IsUsed(v) && array->GetComponent(v, 0) > 0)
-    {
-      weights[v] = 1.0;
-      held[mesh.Component(v)].push_back(v);
-      isAny = true;
-    }
+    isPinned[v] = array->GetComponent(static_cast<vtkIdType>(v), 0) > 0;
   }
-  if (!isAny)
+  if (std::find(isPinned.begin(), isPinned.end(), 1) == isPinned.end())
   {
     throw Error(ErrorCode::BadInput,
       "No point of the first key frame has a value above 0 in \"" + name +
         "\": mark the points to pin (Mark Handle), or place by rigid interpolation.");
   }
-  cartan::IdSample flat;
-  for (std::size_t c = 0; c < held.size(); ++c)
-  {
-    if (!held[c].empty())
-    {
-      cartan::Points points(held[c].size(), 3);
-      for (std::size_t i = 0; i < held[c].size(); ++i)
-      {
-        points.row(static_cast<Eigen::Index>(i)) = keys.Positions[0].row(held[c][i]);
-      }
-      points.rowwise() -= points.colwise().mean().eval();
-      const Eigen::Vector3d sizes = (points.transpose() * points).jacobiSvd().singularValues();
-      if (!(sizes[1] > 1e-12 * sizes[0]))
-      {
-        flat.Add(static_cast<long long>(c));
-      }
-    }
-  }
-  if (!flat.IsEmpty())
-  {
-    throw Error(ErrorCode::BadInput,
-      "The points to pin are all on one line in " + flat.Describe("component", "components") +
-        ": mark three points or more that are not.");
-  }
-  return weights;
-}
-
-Eigen::VectorXd AreaWeights(const cartan::KeyFrames& keys, const cartan::ExecutionContext& context)
-{
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(keys.Mesh->NumberOfVertices());
-  for (const cartan::Points& positions : keys.Positions)
-  {
-    weights += cartan::BarycentricAreas(
-      *keys.Mesh, cartan::TriangleAreas(*keys.Mesh, positions, context));
-  }
-  return weights;
+  return isPinned;
 }
 }
 
@@ -530,7 +466,7 @@ void vtkSurfaceMorph::Morph(const std::vector<vtkPolyData*>& keys,
   Internals::Session& session = this->State->Current;
   const double start = vtkTimerLog::GetUniversalTime();
   const cartan::ExecutionContext context = cartan::MakeContext(this).Part(0.7, 1.0);
-  const Place place = PlaceOf(t, parameters);
+  const cartan::KeyPlace place = cartan::PlaceBetweenKeys(t, parameters);
   const bool isKey = place.Part == 0.0 || place.Part == 1.0;
 
   cartan::Points positions;
@@ -547,8 +483,8 @@ void vtkSurfaceMorph::Morph(const std::vector<vtkPolyData*>& keys,
     if (this->Method != LINEAR)
     {
       const Eigen::VectorXd weights = this->Placement == PINNED_HANDLE
-        ? HandleWeights(keys.front(), this->HandleArrayName, session.Keys)
-        : AreaWeights(session.Keys, context);
+        ? cartan::PinWeights(session.Keys, ReadPinned(keys.front(), this->HandleArrayName))
+        : cartan::AreaWeights(session.Keys, context);
       cartan::RigidPlacement(session.Keys, weights).Place(t, positions);
     }
     if (this->CloseVolume)

@@ -60,7 +60,7 @@ public:
 
 private:
   DiscreteForms FormsAt(double t, const ExecutionContext& context) const;
-  /// One per edge, in the direction of RotationAveraging::GetEdges().
+  /// One per edge, in the direction of Directed: #edges x 9.
   Matrices EdgeTransitionsAt(
     double t, const DiscreteForms& forms, const ExecutionContext& context) const;
   Matrices FramesAt(double t, const Matrices& edgeTransitions, const ExecutionContext& context);

@@ -31,6 +31,13 @@ double EndSlope(double width, double secant, double nextWidth, double nextSecant
 }
 }
 
+KeyPlace PlaceBetweenKeys(double t, const std::vector<double>& parameters)
+{
+  const auto after = std::upper_bound(parameters.begin() + 1, parameters.end() - 1, t);
+  const auto before = after - 1;
+  return { static_cast<int>(before - parameters.begin()), (t - *before) / (*after - *before) };
+}
+
 KeyInterpolation::KeyInterpolation(std::vector<double> parameters, Field values)
   : Parameters(std::move(parameters))
   , Values(std::move(values))
@@ -92,10 +99,10 @@ KeyInterpolation::KeyInterpolation(std::vector<double> parameters, Field values)
 Eigen::VectorXd KeyInterpolation::Evaluate(double t, const ExecutionContext& context) const
 {
   const int keys = static_cast<int>(this->Parameters.size());
-  const auto after = std::upper_bound(this->Parameters.begin(), this->Parameters.end(), t);
-  const int k = std::clamp(static_cast<int>(after - this->Parameters.begin()) - 1, 0, keys - 2);
+  const KeyPlace place = PlaceBetweenKeys(t, this->Parameters);
+  const int k = place.Before;
+  const double s = place.Part;
   const double width = this->Parameters[k + 1] - this->Parameters[k];
-  const double s = (t - this->Parameters[k]) / width;
 
   // v = a v_k + b v_{k+1} + c v'_k + d v'_{k+1}: Hermite's cubic, and straight
   // lines outside.

@@ -8,6 +8,17 @@
 
 namespace cartan
 {
+/// Where t lies between two key parameters: Part of the way from Before to the
+/// one after it, below 0 or above 1 outside of all.
+struct KeyPlace
+{
+  int Before;
+  double Part;
+};
+
+/// `parameters` are two or more, increasing. At an inner one Part is 0.
+KeyPlace PlaceBetweenKeys(double t, const std::vector<double>& parameters);
+
 /// Numbers that are known at key parameters, in between: linear through two
 /// keys, monotone piecewise cubic with a continuous derivative through more
 /// (Fritsch and Carlson, Monotone Piecewise Cubic Interpolation, 1980), so that

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RigidPlacement.h"
 
+#include "Measures.h"
 #include "Rotation.h"
 
-#include <algorithm>
+#include <Eigen/SVD>
 
 namespace cartan
 {
@@ -46,6 +47,56 @@ std::vector<Eigen::Matrix3d> BestRotations(const TriangleMesh& mesh, const Point
   }
   return rotations;
 }
+}
+
+Eigen::VectorXd AreaWeights(const KeyFrames& keys, const ExecutionContext& context)
+{
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(keys.Mesh->NumberOfVertices());
+  for (const Points& positions : keys.Positions)
+  {
+    weights += BarycentricAreas(*keys.Mesh, TriangleAreas(*keys.Mesh, positions, context));
+  }
+  return weights;
+}
+
+Eigen::VectorXd PinWeights(const KeyFrames& keys, const std::vector<char>& isPinned)
+{
+  const TriangleMesh& mesh = *keys.Mesh;
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
+  std::vector<std::vector<int>> pinned(mesh.NumberOfComponents());
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (mesh.IsUsed(v) && isPinned[v])
+    {
+      weights[v] = 1.0;
+      pinned[mesh.Component(v)].push_back(v);
+    }
+  }
+  IdSample flat;
+  for (std::size_t c = 0; c < pinned.size(); ++c)
+  {
+    if (!pinned[c].empty())
+    {
+      Points points(pinned[c].size(), 3);
+      for (std::size_t i = 0; i < pinned[c].size(); ++i)
+      {
+        points.row(static_cast<Eigen::Index>(i)) = keys.Positions[0].row(pinned[c][i]);
+      }
+      points.rowwise() -= points.colwise().mean().eval();
+      const Eigen::Vector3d sizes = (points.transpose() * points).jacobiSvd().singularValues();
+      if (!(sizes[1] > 1e-12 * sizes[0]))
+      {
+        flat.Add(static_cast<long long>(c));
+      }
+    }
+  }
+  if (!flat.IsEmpty())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The points to pin are all on one line in " + flat.Describe("component", "components") +
+        ": mark three points or more that are not.");
+  }
+  return weights;
 }
 
 RigidPlacement::RigidPlacement(const KeyFrames& keys, Eigen::VectorXd weights)
@@ -96,14 +147,10 @@ RigidPlacement::RigidPlacement(const KeyFrames& keys, Eigen::VectorXd weights)
 void RigidPlacement::Place(double t, Points& positions) const
 {
   const TriangleMesh& mesh = *this->Keys.Mesh;
-  const std::vector<double>& parameters = this->Keys.Parameters;
-  // The key frames before and after t, the outermost two beyond them.
-  const auto after = std::upper_bound(parameters.begin() + 1, parameters.end() - 1, t);
-  const std::size_t k = static_cast<std::size_t>(after - parameters.begin()) - 1;
-  const double part = (t - parameters[k]) / (parameters[k + 1] - parameters[k]);
+  const auto [k, part] = PlaceBetweenKeys(t, this->Keys.Parameters);
 
   const Points own = WeightedCenters(mesh, positions, this->Weights);
-  const auto rotationsTo = [&](std::size_t key)
+  const auto rotationsTo = [&](int key)
   {
     return BestRotations(mesh, positions, own, this->Keys.Positions[key], this->Centers[key],
       this->Weights);

@@ -6,6 +6,15 @@
 
 namespace cartan
 {
+/// Weights of RigidPlacement by area: a third of the adjacent triangles' in all key
+/// frames together. #V.
+Eigen::VectorXd AreaWeights(const KeyFrames& keys, const ExecutionContext& context = {});
+
+/// Weights of RigidPlacement that hold `isPinned` (#V) in place: 1 there, 0
+/// elsewhere. Throws Error(BadInput) where those of a component, in the first key
+/// frame, lie on a line, about which the component could turn. #V.
+Eigen::VectorXd PinWeights(const KeyFrames& keys, const std::vector<char>& isPinned);
+
 /// Puts surfaces between key frames, known up to a rigid motion of each
 /// component, where a rigid interpolation of the key frames has them: the
 /// centers of the components move as KeyInterpolation says, and the turn that

@@ -50,8 +50,6 @@ public:
 
   static constexpr int MaximumSteps = 50;
 
-  const std::vector<Edge>& GetEdges() const { return this->Edges; }
-
 private:
   int NodeCount;
   std::vector<Edge> Edges;
