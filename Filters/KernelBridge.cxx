@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "KernelBridge.h"
 
-#include "Kernel/Geometry.h"
+#include "Kernel/Mesh/Geometry.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Kernel/ExecutionContext.h"
-#include "Kernel/TriangleMesh.h"
+#include "Kernel/Base/ExecutionContext.h"
+#include "Kernel/Mesh/TriangleMesh.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAsRigidAsPossibleDeformation.h"
 
-#include "Kernel/AsRigidAsPossibleDeformer.h"
+#include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
 #include "KernelBridge.h"
 
 #include "vtkObjectFactory.h"

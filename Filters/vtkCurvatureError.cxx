@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkCurvatureError.h"
 
-#include "Kernel/Curvature.h"
-#include "Kernel/Geometry.h"
+#include "Kernel/Differential/Curvature.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "KernelBridge.h"
 #include "SurfacePair.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDiscreteForms.h"
 
-#include "Kernel/DiscreteForms.h"
+#include "Kernel/Differential/DiscreteForms.h"
 #include "KernelBridge.h"
 
 #include "vtkDoubleArray.h"

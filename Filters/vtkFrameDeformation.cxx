@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFrameDeformation.h"
 
-#include "Kernel/FrameDeformer.h"
-#include "Kernel/Measures.h"
-#include "Kernel/RayTree.h"
+#include "Kernel/Deformation/FrameDeformer.h"
+#include "Kernel/Measure/Measures.h"
+#include "Kernel/Mesh/RayTree.h"
 #include "KernelBridge.h"
 
 #include "vtkDoubleArray.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFrameReconstruction.h"
 
-#include "Kernel/FrameReconstruction.h"
-#include "Kernel/Rotation.h"
+#include "Kernel/Differential/FrameReconstruction.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "KernelBridge.h"
 
 #include "vtkDataArray.h"

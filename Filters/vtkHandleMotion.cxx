@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkHandleMotion.h"
 
-#include "Kernel/Rotation.h"
+#include "Kernel/Algebra/Rotation.h"
 
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"

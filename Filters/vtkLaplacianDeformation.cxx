@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLaplacianDeformation.h"
 
-#include "Kernel/LaplacianDeformer.h"
+#include "Kernel/Deformation/LaplacianDeformer.h"
 
 #include "vtkObjectFactory.h"
 

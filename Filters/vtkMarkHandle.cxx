@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarkHandle.h"
 
-#include "Kernel/GeodesicDistance.h"
+#include "Kernel/Mesh/GeodesicDistance.h"
 #include "KernelBridge.h"
 
 #include "vtkAbstractArray.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMultiresolutionDeformation.h"
 
-#include "Kernel/MultiresolutionDeformer.h"
+#include "Kernel/Deformation/MultiresolutionDeformer.h"
 
 #include "vtkObjectFactory.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPoissonDeformation.h"
 
-#include "Kernel/PoissonDeformer.h"
+#include "Kernel/Deformation/PoissonDeformer.h"
 
 #include "vtkObjectFactory.h"
 

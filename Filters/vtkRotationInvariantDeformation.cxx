@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkRotationInvariantDeformation.h"
 
-#include "Kernel/RotationInvariantDeformer.h"
+#include "Kernel/Deformation/RotationInvariantDeformer.h"
 
 #include "vtkObjectFactory.h"
 

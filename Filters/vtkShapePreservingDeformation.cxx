@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkShapePreservingDeformation.h"
 
-#include "Kernel/ShapePreservingDeformer.h"
+#include "Kernel/Deformation/ShapePreservingDeformer.h"
 
 #include "vtkObjectFactory.h"
 

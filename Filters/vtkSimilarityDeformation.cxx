@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSimilarityDeformation.h"
 
-#include "Kernel/SimilarityDeformer.h"
+#include "Kernel/Deformation/SimilarityDeformer.h"
 #include "KernelBridge.h"
 
 #include "vtkObjectFactory.h"

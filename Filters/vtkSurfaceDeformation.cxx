@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDeformation.h"
 
-#include "Kernel/ConstrainedSolver.h"
-#include "Kernel/HandleCurve.h"
-#include "Kernel/HandleProblem.h"
-#include "Kernel/Rotation.h"
+#include "Kernel/Algebra/ConstrainedSolver.h"
+#include "Kernel/Deformation/HandleCurve.h"
+#include "Kernel/Deformation/HandleProblem.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "KernelBridge.h"
 #include "vtkHandleMotion.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceMorph.h"
 
-#include "Kernel/DeformationGradientMorph.h"
-#include "Kernel/DiscreteFormsMorph.h"
-#include "Kernel/IsometricMorph.h"
-#include "Kernel/LinearMorph.h"
-#include "Kernel/MorphVolume.h"
-#include "Kernel/RigidPlacement.h"
+#include "Kernel/Morph/TriangleGradientMorph.h"
+#include "Kernel/Morph/DiscreteFormsMorph.h"
+#include "Kernel/Morph/IsometricMorph.h"
+#include "Kernel/Morph/LinearMorph.h"
+#include "Kernel/Morph/MorphVolume.h"
+#include "Kernel/Morph/RigidPlacement.h"
 #include "SurfacePair.h"
 
 #include "vtkCompositeDataIterator.h"
@@ -448,7 +448,7 @@ void vtkSurfaceMorph::Prepare(const std::vector<vtkPolyData*>& keys,
       break;
     }
     case DEFORMATION_GRADIENT:
-      session.Morph = std::make_unique<cartan::DeformationGradientMorph>(session.Keys, context);
+      session.Morph = std::make_unique<cartan::TriangleGradientMorph>(session.Keys, context);
       break;
     default:
       session.Morph = std::make_unique<cartan::LinearMorph>(session.Keys);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkVolumeChange.h"
 
-#include "Kernel/Measures.h"
+#include "Kernel/Measure/Measures.h"
 #include "KernelBridge.h"
 #include "SurfacePair.h"
 

@@ -12,7 +12,7 @@
 #include "BenchmarkTools.h"
 #include "PeerDeformation.h"
 
-#include "Kernel/RotationInvariantDeformer.h"
+#include "Kernel/Deformation/RotationInvariantDeformer.h"
 #include "vtkHandleMotion.h"
 #include "vtkRotationInvariantDeformation.h"
 

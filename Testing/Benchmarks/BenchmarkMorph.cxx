@@ -7,10 +7,10 @@
 #include "BenchmarkTools.h"
 #include "PeerDeformation.h"
 
-#include "Kernel/DeformationGradientMorph.h"
-#include "Kernel/DiscreteFormsMorph.h"
-#include "Kernel/IsometricMorph.h"
-#include "Kernel/ShapePreservingDeformer.h"
+#include "Kernel/Morph/TriangleGradientMorph.h"
+#include "Kernel/Morph/DiscreteFormsMorph.h"
+#include "Kernel/Morph/IsometricMorph.h"
+#include "Kernel/Deformation/ShapePreservingDeformer.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -105,7 +105,7 @@ void Measure(const Mesh& mesh, double degrees)
            0.0 },
          Method{ "DeformationGradient",
            [](const KeyFrames& of) -> std::unique_ptr<SurfaceMorph>
-           { return std::make_unique<cartan::DeformationGradientMorph>(of); },
+           { return std::make_unique<cartan::TriangleGradientMorph>(of); },
            0.0 } })
   {
     const Times times = Play(keys, method.Make);

@@ -7,7 +7,7 @@
 #include "BenchmarkTools.h"
 #include "PeerDeformation.h"
 
-#include "Kernel/SimilarityDeformer.h"
+#include "Kernel/Deformation/SimilarityDeformer.h"
 
 #include <cstdio>
 #include <exception>

@@ -3,7 +3,7 @@
 
 #include "OffReader.h"
 
-#include "Kernel/Rotation.h"
+#include "Kernel/Algebra/Rotation.h"
 
 #include <algorithm>
 #include <chrono>

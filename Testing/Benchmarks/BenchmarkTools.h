@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Kernel/HandleProblem.h"
+#include "Kernel/Deformation/HandleProblem.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Kernel/Types.h"
+#include "Kernel/Base/Types.h"
 
 #include <memory>
 #include <vector>

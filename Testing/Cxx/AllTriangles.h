@@ -3,7 +3,7 @@
 
 #include "TestShapes.h"
 
-#include "Kernel/VolumePreservation.h"
+#include "Kernel/Measure/VolumePreservation.h"
 
 namespace shapes
 {

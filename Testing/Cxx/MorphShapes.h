@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Kernel/SurfaceMorph.h"
+#include "Kernel/Morph/SurfaceMorph.h"
 #include "TestShapes.h"
 
 #include <algorithm>

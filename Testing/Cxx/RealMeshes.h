@@ -4,7 +4,7 @@
 #include "OffReader.h"
 #include "TestShapes.h"
 
-#include "Kernel/TriangleMesh.h"
+#include "Kernel/Mesh/TriangleMesh.h"
 
 #include <iomanip>
 #include <iostream>

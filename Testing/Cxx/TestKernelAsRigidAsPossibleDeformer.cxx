@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/AsRigidAsPossibleDeformer.h"
+#include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
 
-#include "Kernel/Geometry.h"
-#include "Kernel/Rotation.h"
-#include "Kernel/ShapePreservingDeformer.h"
+#include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Deformation/ShapePreservingDeformer.h"
 #include "RealMeshes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/ConstrainedSolver.h"
+#include "Kernel/Algebra/ConstrainedSolver.h"
 
-#include "Kernel/Laplacian.h"
+#include "Kernel/Differential/Laplacian.h"
 #include "RealMeshes.h"
 
 #include <Eigen/QR>

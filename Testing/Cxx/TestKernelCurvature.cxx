@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Curvature.h"
-#include "Kernel/Geometry.h"
+#include "Kernel/Differential/Curvature.h"
+#include "Kernel/Mesh/Geometry.h"
 
 #include "TestShapes.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/LaplacianDeformer.h"
-#include "Kernel/Measures.h"
-#include "Kernel/MotionBlend.h"
-#include "Kernel/MultiresolutionDeformer.h"
-#include "Kernel/PoissonDeformer.h"
-#include "Kernel/Rotation.h"
+#include "Kernel/Deformation/LaplacianDeformer.h"
+#include "Kernel/Measure/Measures.h"
+#include "Kernel/Deformation/MotionBlend.h"
+#include "Kernel/Deformation/MultiresolutionDeformer.h"
+#include "Kernel/Deformation/PoissonDeformer.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "TestShapes.h"
 
 #include <gtest/gtest.h>

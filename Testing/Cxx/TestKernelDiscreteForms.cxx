@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/DiscreteForms.h"
+#include "Kernel/Differential/DiscreteForms.h"
 
-#include "Kernel/Geometry.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/GeodesicDistance.h"
+#include "Kernel/Mesh/GeodesicDistance.h"
 
 #include "TestShapes.h"
 

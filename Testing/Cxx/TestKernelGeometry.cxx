@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Geometry.h"
+#include "Kernel/Mesh/Geometry.h"
 
 #include "RealMeshes.h"
 

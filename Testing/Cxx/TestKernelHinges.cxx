@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Hinges.h"
+#include "Kernel/Differential/Hinges.h"
 
-#include "Kernel/DualForest.h"
-#include "Kernel/Laplacian.h"
+#include "Kernel/Differential/DualForest.h"
+#include "Kernel/Differential/Laplacian.h"
 #include "RealMeshes.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/IsometricMorph.h"
+#include "Kernel/Morph/IsometricMorph.h"
 
-#include "Kernel/Geometry.h"
-#include "Kernel/Rotation.h"
+#include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "RealMeshes.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/KeyInterpolation.h"
+#include "Kernel/Morph/KeyInterpolation.h"
 
 #include "TestShapes.h"
 

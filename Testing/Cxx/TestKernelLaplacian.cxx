@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Laplacian.h"
+#include "Kernel/Differential/Laplacian.h"
 
-#include "Kernel/Geometry.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Measures.h"
+#include "Kernel/Measure/Measures.h"
 
 #include "TestShapes.h"
 

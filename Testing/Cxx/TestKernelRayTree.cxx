@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/RayTree.h"
+#include "Kernel/Mesh/RayTree.h"
 
 #include "AllTriangles.h"
 #include "RealMeshes.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Rotation.h"
+#include "Kernel/Algebra/Rotation.h"
 
 #include "TestShapes.h"
 

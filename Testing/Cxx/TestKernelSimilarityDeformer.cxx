@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/SimilarityDeformer.h"
+#include "Kernel/Deformation/SimilarityDeformer.h"
 
-#include "Kernel/AsRigidAsPossibleDeformer.h"
-#include "Kernel/Geometry.h"
-#include "Kernel/LaplacianDeformer.h"
-#include "Kernel/Measures.h"
-#include "Kernel/Rotation.h"
+#include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
+#include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Deformation/LaplacianDeformer.h"
+#include "Kernel/Measure/Measures.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "RealMeshes.h"
 
 #include <Eigen/LU>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/DeformationGradientMorph.h"
-#include "Kernel/DiscreteFormsMorph.h"
-#include "Kernel/FrameReconstruction.h"
-#include "Kernel/Geometry.h"
-#include "Kernel/IsometricMorph.h"
-#include "Kernel/Measures.h"
-#include "Kernel/MorphVolume.h"
-#include "Kernel/RigidPlacement.h"
-#include "Kernel/Rotation.h"
+#include "Kernel/Morph/TriangleGradientMorph.h"
+#include "Kernel/Morph/DiscreteFormsMorph.h"
+#include "Kernel/Differential/FrameReconstruction.h"
+#include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Morph/IsometricMorph.h"
+#include "Kernel/Measure/Measures.h"
+#include "Kernel/Morph/MorphVolume.h"
+#include "Kernel/Morph/RigidPlacement.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "MorphShapes.h"
 #include "RealMeshes.h"
 
@@ -15,7 +15,7 @@
 
 #include <chrono>
 
-using cartan::DeformationGradientMorph;
+using cartan::TriangleGradientMorph;
 using cartan::DiscreteFormsMorph;
 using cartan::KeyFrames;
 using cartan::Points;
@@ -56,7 +56,7 @@ std::vector<Method> Methods()
     { "isometric", [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
       { return std::make_unique<cartan::IsometricMorph>(keys); } },
     { "deformation gradient", [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
-      { return std::make_unique<DeformationGradientMorph>(keys); }, false },
+      { return std::make_unique<TriangleGradientMorph>(keys); }, false },
   };
 }
 
@@ -416,13 +416,13 @@ TEST(DiscreteFormsMorph, RefusesToGoWhereLengthsAreNegative)
   }
 }
 
-TEST(DeformationGradientMorph, BendsWithoutLossUpToThreeQuartersOfALap)
+TEST(TriangleGradientMorph, BendsWithoutLossUpToThreeQuartersOfALap)
 {
   const Shape bar = shapes::Bar(6, 6, 48, { 1, 1, 8 });
   for (const double angle : { 90.0, 170.0, 270.0 })
   {
     const KeyFrames keys = Keys(bar, { bar.Positions, morphshapes::Bend(bar, angle, 1, 7) });
-    DeformationGradientMorph morph(keys);
+    TriangleGradientMorph morph(keys);
     const MorphFigures figures = MeasureMorph(keys, morph.Evaluate(0.5, {}), 0.5);
     ShowFigure("bend, volume", figures.Volume);
     ShowFigure("bend, edges", figures.EdgeRms);
@@ -431,7 +431,7 @@ TEST(DeformationGradientMorph, BendsWithoutLossUpToThreeQuartersOfALap)
   }
 }
 
-TEST(DeformationGradientMorph, FillsTrianglesWithoutAreaFromTheirNeighbours)
+TEST(TriangleGradientMorph, FillsTrianglesWithoutAreaFromTheirNeighbours)
 {
   Shape bar = shapes::Bar(4, 4, 12, { 1, 1, 3 });
   // A triangle of this side collapses in the second key frame.
@@ -439,7 +439,7 @@ TEST(DeformationGradientMorph, FillsTrianglesWithoutAreaFromTheirNeighbours)
   const Eigen::RowVector3i face = bar.Faces.row(60);
   keys.Positions[1].row(face[0]) =
     0.5 * (keys.Positions[1].row(face[1]) + keys.Positions[1].row(face[2]));
-  DeformationGradientMorph morph(keys);
+  TriangleGradientMorph morph(keys);
   EXPECT_TRUE(morph.Evaluate(0.5, {}).allFinite());
   EXPECT_LT(Distance(Placed(keys, morph, 1.0), keys.Positions[1]), 1e-9);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/TriangleMesh.h"
+#include "Kernel/Mesh/TriangleMesh.h"
 
 #include "RealMeshes.h"
 

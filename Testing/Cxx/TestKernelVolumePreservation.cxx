@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/VolumePreservation.h"
+#include "Kernel/Measure/VolumePreservation.h"
 
 #include "AllTriangles.h"
-#include "Kernel/FrameDeformer.h"
-#include "Kernel/Geometry.h"
-#include "Kernel/Measures.h"
-#include "Kernel/RotationInvariantDeformer.h"
+#include "Kernel/Deformation/FrameDeformer.h"
+#include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Measure/Measures.h"
+#include "Kernel/Deformation/RotationInvariantDeformer.h"
 #include "RealMeshes.h"
 #include "TestShapes.h"
 

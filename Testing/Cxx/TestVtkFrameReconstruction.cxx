@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFrameReconstruction.h"
 
-#include "Kernel/Geometry.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "VtkTestHelpers.h"
 
 #include "vtkDiscreteForms.h"

@@ -3,7 +3,7 @@
 // What vtkSurfaceDeformation promises for every method, shown on one of them.
 #include "vtkRotationInvariantDeformation.h"
 
-#include "Kernel/Geometry.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "VtkTestHelpers.h"
 #include "vtkHandleMotion.h"
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/ExecutionContext.h"
+#include "Base/Types.h"
+
+#include <memory>
+#include <vector>
+
+namespace cartan
+{
+enum class SolverBackend
+{
+  Automatic, ///< CHOLMOD when built with it, else Eigen
+  Eigen,     ///< Eigen's simplicial Cholesky factorization
+  Cholmod    ///< SuiteSparse CHOLMOD; Error(BadInput) when not built with it
+};
+
+bool HasCholmod();
+
+/// Solves A x = b for a sparse symmetric positive semidefinite A of which some
+/// unknowns are fixed and others softly held:
+///
+///   (A_ff + diag s_f) x_f = b_f - A_fc x_c,
+///
+/// with f the free and c the fixed unknowns, and s the soft stiffnesses, zero
+/// where nothing holds (their targets t go into b as s t). Factorize once, solve
+/// many right-hand sides. The only place that names a decomposition.
+class ConstrainedSolver
+{
+public:
+  explicit ConstrainedSolver(SolverBackend backend = SolverBackend::Automatic);
+  ~ConstrainedSolver();
+  ConstrainedSolver(ConstrainedSolver&&) noexcept;
+  ConstrainedSolver& operator=(ConstrainedSolver&&) noexcept;
+
+  /// `matrix` is #U x #U with both triangles stored; `isFixed` has #U
+  /// entries, non-zero where the value is given; `stiffness` is empty or has #U
+  /// entries >= 0, added to the diagonal. The symbolic factors of the last call
+  /// are kept while the free unknowns and the matrix's pattern are the same.
+  ///
+  /// Throws Error(SingularSystem) when free unknowns that are connected through
+  /// non-zero entries reach neither a fixed unknown nor a stiffness. The message
+  /// lists vertices: `vertices` names that of each unknown (#U, increasing among
+  /// the free ones; empty where they are the same).
+  void Factorize(const SparseMatrix& matrix, const std::vector<char>& isFixed,
+    const Eigen::VectorXd& stiffness = {}, const std::vector<int>& vertices = {},
+    const ExecutionContext& context = {});
+
+  /// The free unknowns in increasing order.
+  const std::vector<int>& GetFree() const { return this->Free; }
+
+  /// x_f for the right-hand side b_f - A_fc x_c given whole: #free x k each.
+  /// Throws Error(SingularSystem) when the result is not finite.
+  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& rightHandSide) const;
+
+  /// The convenient form: `rightHandSide` (b, #U x k) and `values` (#U x k), of
+  /// which the fixed rows are read and the free rows are written.
+  void Solve(const Eigen::Ref<const Field>& rightHandSide, Field& values) const;
+
+  /// How many numeric and symbolic factorizations there have been.
+  int GetNumberOfFactorizations() const { return this->Factorizations; }
+  int GetNumberOfAnalyses() const { return this->Analyses; }
+
+  SolverBackend GetBackend() const { return this->Backend; }
+
+private:
+  class Factor;
+  class EigenFactor;
+  class CholmodFactor;
+
+  SolverBackend Backend;
+  std::unique_ptr<Factor> Factors;
+  std::vector<int> Free;
+  std::vector<int> FreeIndex;  // #U, -1 where fixed
+  SparseMatrix FreeBlock;      // lower triangle of A_ff + diag s_f
+  SparseMatrix Coupling;       // A_fc, #free x #U
+  int Factorizations = 0;
+  int Analyses = 0;
+};
+}

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Deformation/FrameDeformer.h"
+
+#include <memory>
+#include <vector>
+
+namespace cartan
+{
+enum class RigidityEnergy
+{
+  Spokes,           ///< Sorkine and Alexa 2007
+  SpokesAndRims,    ///< Chao et al. 2010
+  SmoothedRotations ///< Levi and Gotsman 2015
+};
+
+enum class InitialGuess
+{
+  RestShape,         ///< only the handles moved
+  PreviousResult,    ///< that of the last motion; of the first, ShapePreserving
+  RotationInvariant, ///< RotationInvariantDeformer
+  ShapePreserving    ///< ShapePreservingDeformer, which knows laps
+};
+
+/// Deformation that leaves the neighbourhood of each vertex as rigid as the
+/// handles let it. With rest positions p, the positions x and a rotation R_i
+/// per vertex are to minimize one of
+///
+///   Spokes:  E = sum_i sum_j w_ij |x_i - x_j - R_i (p_i - p_j)|^2
+///
+/// over the neighbours j of i (Sorkine and Alexa, As-Rigid-As-Possible Surface
+/// Modeling, 2007, Eq. 7);
+///
+///   SpokesAndRims:  E = 2/3 sum_i sum_(j,k) c_jk |x_j - x_k - R_i (p_j - p_k)|^2
+///
+/// over the three edges of each triangle at i, c_jk the triangle's part of w_jk
+/// (Chao, Pinkall, Sanan, Schroeder, A Simple Geometric Model for Elastic
+/// Deformations, 2010, section 4; the factor makes it agree with Spokes in
+/// homogeneous strain);
+///
+///   SmoothedRotations:  Spokes + alpha A sum_i sum_j w_ij |R_i - R_j|^2
+///
+/// with A the area of the free vertices and the Frobenius norm (Levi and
+/// Gotsman, Smooth Rotation Enhanced As-Rigid-As-Possible Mesh Animation, 2015,
+/// Eq. 6), which resists bending as a shell does. Vertices that are held softly
+/// with weight w at t add w^2 |x_i - t|^2.
+///
+/// Weights are HandleProblem::PositionWeights, symmetrized. A cell of Spokes
+/// with negative weights can gain energy by turning at rest: there and in
+/// SmoothedRotations they count as zero, as HandleProblem::ClampWeights has it.
+/// SpokesAndRims keeps their sign, as the energy of a whole triangle is never
+/// negative.
+///
+/// For given x the best R_i are closest rotations; for given R_i all three
+/// energies ask for x with the same matrix,
+///
+///   L x = b,  Spokes: b_i = sum_j w_ij (R_i + R_j) (p_i - p_j) / 2,
+///
+/// which is that of the linear methods: the system is the initial guess's,
+/// factorized once. Taking turns never raises the energy. Between the turns the
+/// steps are extrapolated (Anderson acceleration, after Peng et al., Anderson
+/// Acceleration for Geometry Optimization and Physics Simulation, 2018) where
+/// that lowers the energy by more than the tolerance, so it still never rises.
+///
+/// Held vertices whose neighbours are all held get the rotation that fits their
+/// ring, and keep it. With ConstrainPositions off, moving handles are held in
+/// rotation instead of in position.
+class AsRigidAsPossibleDeformer : public SurfaceDeformer
+{
+public:
+  /// Factorizes once (twice with ConstrainPositions off); see HandleLaplacian
+  /// for what it throws. PositionWeights serve as Weights too.
+  AsRigidAsPossibleDeformer(HandleProblem problem,
+    RigidityEnergy energy = RigidityEnergy::Spokes,
+    InitialGuess guess = InitialGuess::ShapePreserving,
+    SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
+  ~AsRigidAsPossibleDeformer() override;
+
+  /// alpha >= 0 of SmoothedRotations, without unit. Default: 0.02.
+  void SetBending(double alpha) { this->Bending = alpha; }
+
+  /// How many steps at most, >= 0 (none: the initial guess), and below which
+  /// decrease of the energy in a step, relative to the energy, to stop.
+  /// Default: 10, 1e-4.
+  void SetIteration(int maximum, double tolerance)
+  {
+    this->MaximumIterations = maximum;
+    this->Tolerance = tolerance;
+  }
+
+  /// Throws what the initial guess throws: ShapePreservingDeformer refuses
+  /// rotations of 360 degrees or more about different axes.
+  void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context) override;
+
+  /// Of the last motion: E of the initial guess and after each step, in squared
+  /// length units for weights without unit; the last is that of the result.
+  const std::vector<double>& GetEnergies() const { return this->Energies; }
+  int GetNumberOfIterations() const { return static_cast<int>(this->Energies.size()) - 1; }
+
+  /// The terms of E at each vertex for the result; 0 where nothing moves: #V.
+  Eigen::VectorXd GetVertexEnergies() const;
+
+  /// Whether the last step's decrease fell below the tolerance.
+  bool HasConverged() const { return this->Converged; }
+
+  int GetNumberOfFactorizations() const override
+  {
+    return this->Guess->GetNumberOfFactorizations();
+  }
+  int GetNumberOfFreeVertices() const override { return this->System->NumberOfUnknowns(); }
+  std::string GetWarning() const override { return this->Warning; }
+
+private:
+  /// An edge of a cell from its center.
+  struct Spoke
+  {
+    int Neighbor; ///< site
+    double Weight;
+  };
+  /// The triangles beside a spoke.
+  struct Rim
+  {
+    int Left; ///< the site opposite to the spoke in the triangle on its left; -1: none
+    int Right;
+    double LeftWeight; ///< the left triangle's part of the spoke's weight
+    double RimWeight;  ///< and of the edge from Neighbor to Left
+  };
+  class Extrapolation;
+
+  void BuildCells();
+  void BuildRims();
+  void BuildColors();
+  void FitCell(int cell, double bending);
+  void FitRotations(const ExecutionContext& context);
+  double Evaluate(const HandleTargets& targets, const ExecutionContext& context);
+  void EvaluateCell(int cell, double bending, const HandleTargets& targets);
+  void Start(
+    const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
+
+  HandleProblem Problem;
+  RigidityEnergy Energy;
+  InitialGuess GuessKind;
+  std::unique_ptr<FrameDeformer> Guess;
+  std::shared_ptr<const HandleLaplacian> System;
+  double Bending = 0.02;
+  int MaximumIterations = 10;
+  double Tolerance = 1e-4;
+
+  // Sites are numbered so that the unknowns come first; then the held vertices
+  // next to them, which are the last cells to be fitted in each step; then the
+  // other cells, those of moving handles and next to them; then the neighbours
+  // of cells, which stay at rest.
+  int ActiveCount = 0;
+  int CellCount = 0;
+  std::vector<int> Vertices;        // #sites
+  std::vector<int> Unknowns;        // #unknowns, System's number of a cell
+  std::vector<int> Cells;           // #unknowns, the inverse
+  std::vector<char> HoldsRotation;  // #cells
+  std::vector<int> SpokeOffsets;    // #cells + 1
+  std::vector<Spoke> Spokes;
+  std::vector<Rim> Rims;            // as Spokes; empty without rims
+  /// Active cells in groups of which no two are neighbours; empty unless
+  /// rotations are coupled.
+  std::vector<std::vector<int>> Colors;
+  std::vector<int> MovingHandles;   // #V, index in Moving or -1
+  double FreeArea = 0.0;
+
+  Points Rest;                      // #sites x 3
+  Points Current;                   // #sites x 3
+  Matrices Rotations;               // #sites x 9
+  Eigen::VectorXd CellEnergies;     // #cells
+  Points Residual;                  // #unknowns x 3: b - L x
+  bool HasPrevious = false;
+  std::vector<double> Energies;
+  bool Converged = false;
+  std::string Warning;
+};
+}

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Deformation/FrameDeformer.h"
+
+#include "Differential/Curvature.h"
+#include "Mesh/Geometry.h"
+#include "Measure/Measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cartan
+{
+FrameDeformer::FrameDeformer(
+  HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
+  : Problem(std::move(problem))
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const auto symmetricWeights = [&](LaplacianWeights weights)
+  {
+    Eigen::VectorXd symmetric =
+      SymmetricPart(mesh, cartan::EdgeWeights(mesh, *this->Problem.Rest, weights, context));
+    if (this->Problem.ClampWeights)
+    {
+      symmetric = symmetric.cwiseMax(0.0).eval();
+    }
+    return std::make_shared<const Eigen::VectorXd>(std::move(symmetric));
+  };
+  const bool sameWeights = this->Problem.PositionWeights == this->Problem.Weights;
+  const bool isShared = this->Problem.ConstrainPositions && sameWeights;
+  const auto frameWeights = symmetricWeights(this->Problem.Weights);
+  context.Report(0.1);
+  this->Frames = std::make_shared<HandleLaplacian>(this->Problem, frameWeights, Hold::AllHandles,
+    backend, context.Part(0.1, isShared ? 1.0 : 0.5));
+  this->EdgeWeights =
+    sameWeights ? frameWeights : symmetricWeights(this->Problem.PositionWeights);
+  this->Positions = isShared
+    ? this->Frames
+    : std::make_shared<HandleLaplacian>(this->Problem, this->EdgeWeights,
+        this->Problem.ConstrainPositions ? Hold::AllHandles : Hold::PinnedOnly, backend,
+        context.Part(0.5, 1.0));
+  const std::vector<int> moving = MovingHandleOfVertices(this->Problem);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (moving[v] >= 0 && mesh.IsUsed(v))
+    {
+      this->HandleVertices.push_back({ v, moving[v] });
+    }
+  }
+}
+
+int FrameDeformer::GetNumberOfFactorizations() const
+{
+  return this->Frames->GetNumberOfFactorizations() +
+    (this->Positions == this->Frames ? 0 : this->Positions->GetNumberOfFactorizations());
+}
+
+void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
+  DeformedSurface& result, const ExecutionContext& context)
+{
+  this->Warning.clear();
+  result.Positions = *this->Problem.Rest;
+  // Not those of an earlier motion with another correction.
+  result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());
+  // Softly held and unheld vertices among these are overwritten by the solve.
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    result.Positions.row(held.Vertex) =
+      HandleTarget(this->Problem, targets, held.Vertex, held.Handle).transpose();
+  }
+  const bool isDirect = !this->PreservesVolume() &&
+    this->DeformDirectly(targets, result.Positions, context);
+  if (!isDirect || wantTransforms)
+  {
+    if (this->Transforms.rows() == 0)
+    {
+      this->Transforms = Identities(this->Problem.Mesh->NumberOfVertices());
+    }
+    this->ComputeTransforms(targets, context);
+    context.Report(0.4);
+  }
+  if (!isDirect)
+  {
+    this->SolvePositions(targets, this->Transforms, result, context);
+    context.Report(0.7);
+  }
+  if (this->PreservesVolume())
+  {
+    if (this->Correction == VolumeCorrection::FrameScaling)
+    {
+      this->ScaleFrames(targets, result, context);
+    }
+    if (this->Close)
+    {
+      this->CloseVolumes(result.Positions);
+    }
+  }
+  if (wantTransforms)
+  {
+    result.Transforms = this->Transforms;
+  }
+  context.Report(1.0);
+}
+
+/// sum over the triangles t of a vertex i and its edges in them of
+/// c_t,ij R_t (p_i - p_j).
+Eigen::Vector3d FrameDeformer::TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const Points& rest = *this->Problem.Rest;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int d = mesh.RingBegin(vertex); d < mesh.RingEnd(vertex); ++d)
+  {
+    const int t = mesh.LeftTriangle(d);
+    if (t < 0)
+    {
+      continue;
+    }
+    double scale = 0.0;
+    Eigen::RowVector3d edges = Eigen::RowVector3d::Zero();
+    for (int c = 0; c < 3; ++c)
+    {
+      const int corner = mesh.GetTriangles()(t, c);
+      const int other = mesh.GetTriangles()(t, (c + 1) % 3) == vertex
+        ? mesh.GetTriangles()(t, (c + 2) % 3)
+        : mesh.GetTriangles()(t, (c + 1) % 3);
+      scale += frameScale[corner] / 3.0;
+      if (corner != vertex)
+      {
+        edges += this->TriangleWeights(t, c) * (rest.row(vertex) - rest.row(other));
+      }
+    }
+    sum += scale * (MatrixAt(this->TriangleTransforms, t) * edges.transpose());
+  }
+  return sum;
+}
+
+void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices& transforms,
+  DeformedSurface& result, const ExecutionContext& context)
+{
+  const HandleLaplacian& system = *this->Positions;
+  const Points& rest = *this->Problem.Rest;
+  Points& positions = result.Positions;
+  const bool isByTriangle = this->TriangleTransforms.rows() > 0;
+  if (isByTriangle && this->TriangleWeights.rows() == 0)
+  {
+    this->TriangleWeights = CornerWeights(
+      *this->Problem.Mesh, rest, this->Problem.PositionWeights, context);
+  }
+  // Neutral offset: the target of an edge, R_mean (p_j - p_i), is what its two
+  // ends make of it when each carries the middle of the body under it rigidly,
+  //   (R_i + R_j)/2 (p_j - p_i) + (R_j - R_i) (o_i + o_j)/2,
+  // with o from the middle to the skin: the skin stretches outside of a bend
+  // and shrinks inside, and the middle keeps its length.
+  const Points* offsets = this->PreservesVolume() &&
+      this->Correction == VolumeCorrection::NeutralOffset
+    ? &this->Model->Offsets
+    : nullptr;
+  Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
+  context.For(system.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        const int v = system.Vertex(i);
+        const Eigen::Vector3d point = rest.row(v);
+        const auto transform = MatrixAt(transforms, v);
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        if (isByTriangle)
+        {
+          sum = this->TriangleSum(v, result.FrameScale);
+        }
+        for (const auto* edge = system.EdgesBegin(i); edge != system.EdgesEnd(i); ++edge)
+        {
+          const int w = system.Vertex(edge->Neighbor);
+          const auto other = MatrixAt(transforms, w);
+          const double half = 0.5 * edge->Weight;
+          if (!isByTriangle)
+          {
+            sum += half * ((transform + other) * (point - rest.row(w).transpose()));
+          }
+          if (offsets)
+          {
+            sum += half *
+              ((transform - other) * (offsets->row(v) + offsets->row(w)).transpose());
+          }
+          if (edge->Neighbor >= system.NumberOfUnknowns())
+          {
+            sum += edge->Weight * positions.row(w).transpose();
+          }
+        }
+        if (system.SquaredSoftWeight(i) > 0.0)
+        {
+          sum += 0.5 * system.SquaredSoftWeight(i) *
+            HandleTarget(this->Problem, targets, v, system.MovingHandle(i));
+        }
+        rightHandSide.row(i) = sum;
+      }
+    });
+  const Eigen::MatrixXd solution = system.Solve(rightHandSide);
+  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+  {
+    positions.row(system.Vertex(i)) = solution.row(i);
+  }
+}
+
+void FrameDeformer::ScaleFrames(
+  const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context)
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const Curvatures curvatures = CurvaturesFromNormals(
+    mesh, result.Positions, VertexNormals(mesh, result.Positions, context), context);
+  Matrices scaled = this->Transforms;
+  for (int i = 0; i < this->Positions->NumberOfLocals(); ++i)
+  {
+    const int v = this->Positions->Vertex(i);
+    if (!this->Model->EnclosesVolume[mesh.Component(v)] || !this->Model->IsMeasured[v])
+    {
+      continue;
+    }
+    // The depth of the surface at rest serves the deformed one too.
+    const double k1 = curvatures.Maximum[v];
+    const double k2 = curvatures.Minimum[v];
+    const double height =
+      ColumnHeight(ColumnDepth(this->Model->LocalDepth[v], k1, k2), k1, k2);
+    const double ratio = this->Model->ColumnHeight[v] / height;
+    if (std::isfinite(ratio) && ratio > 0.0)
+    {
+      result.FrameScale[v] = std::sqrt(ratio);
+      scaled.row(v) *= result.FrameScale[v];
+    }
+  }
+  this->SolvePositions(targets, scaled, result, context);
+}
+
+void FrameDeformer::CloseVolumes(Points& positions)
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const HandleLaplacian& system = *this->Positions;
+  // The Lagrange step: among all changes of one volume by the same amount,
+  // A^-1 grad V costs the position energy least.
+  const Points gradient = VolumeGradient(mesh, positions);
+  Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
+  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+  {
+    rightHandSide.row(i) = gradient.row(system.Vertex(i));
+  }
+  const Eigen::MatrixXd solution = system.Solve(rightHandSide);
+  Points direction = Points::Zero(positions.rows(), 3);
+  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+  {
+    direction.row(system.Vertex(i)) = solution.row(i);
+  }
+  const std::vector<double> steps = VolumeClosingSteps(
+    mesh, positions, direction, this->Model->EnclosesVolume, this->Model->Volumes);
+  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+  {
+    const int v = system.Vertex(i);
+    positions.row(v) += steps[mesh.Component(v)] * direction.row(v);
+  }
+
+  IdSample notClosed;
+  if (std::find(steps.begin(), steps.end(), 0.0) != steps.end())
+  {
+    const std::vector<ComponentVolume> components = MeasureComponents(mesh, positions);
+    for (std::size_t c = 0; c < steps.size(); ++c)
+    {
+      const double rest = this->Model->Volumes[c];
+      if (this->Model->EnclosesVolume[c] && std::abs(components[c].Volume - rest) > 1e-9 * rest)
+      {
+        notClosed.Add(static_cast<long long>(c));
+      }
+    }
+  }
+  if (!notClosed.IsEmpty())
+  {
+    this->Warning += (this->Warning.empty() ? "" : " ");
+    this->Warning += "The volume of " + notClosed.Describe("component", "components") +
+      " could not be closed: no displacement of its free points along the volume's gradient "
+      "gives it back. Leave more points free, or deform less.";
+  }
+}
+}

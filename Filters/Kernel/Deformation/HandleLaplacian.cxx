@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Deformation/HandleLaplacian.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cartan
+{
+namespace
+{
+/// The soft weight of a held vertex; infinity without soft weights.
+double HoldWeight(const HandleProblem& problem, int vertex)
+{
+  return problem.SoftWeights.size() ? problem.SoftWeights[vertex]
+                                    : std::numeric_limits<double>::infinity();
+}
+
+/// Marks the unknown vertices that a moving handle reaches through unknown ones.
+std::vector<char> ReachedUnknowns(const TriangleMesh& mesh, const std::vector<char>& isHeld,
+  const std::vector<int>& moving)
+{
+  const int numberOfVertices = mesh.NumberOfVertices();
+  std::vector<char> isReached(numberOfVertices, 0);
+  std::vector<int> stack;
+  const auto reach = [&](int v)
+  {
+    if (!isHeld[v] && !isReached[v])
+    {
+      isReached[v] = 1;
+      stack.push_back(v);
+    }
+  };
+  for (int v = 0; v < numberOfVertices; ++v)
+  {
+    if (moving[v] < 0 || !mesh.IsUsed(v))
+    {
+      continue;
+    }
+    reach(v);
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      reach(mesh.Neighbor(d));
+    }
+  }
+  while (!stack.empty())
+  {
+    const int v = stack.back();
+    stack.pop_back();
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      reach(mesh.Neighbor(d));
+    }
+  }
+  return isReached;
+}
+
+std::vector<char> HeldVertices(
+  const HandleProblem& problem, Hold hold, const std::vector<int>& moving)
+{
+  std::vector<char> isHeld(problem.Handle.size(), 0);
+  for (std::size_t v = 0; v < isHeld.size(); ++v)
+  {
+    isHeld[v] = problem.Handle[v] > 0 && std::isinf(HoldWeight(problem, static_cast<int>(v))) &&
+      (hold == Hold::AllHandles || moving[v] < 0);
+  }
+  return isHeld;
+}
+}
+
+std::vector<int> MovingHandleOfVertices(const HandleProblem& problem)
+{
+  std::vector<int> moving(problem.Handle.size(), -1);
+  for (std::size_t v = 0; v < moving.size(); ++v)
+  {
+    const auto found =
+      std::lower_bound(problem.Moving.begin(), problem.Moving.end(), problem.Handle[v]);
+    if (problem.Handle[v] > 0 && found != problem.Moving.end() && *found == problem.Handle[v])
+    {
+      moving[v] = static_cast<int>(found - problem.Moving.begin());
+    }
+  }
+  return moving;
+}
+
+std::vector<char> UnknownVertices(const HandleProblem& problem, Hold hold)
+{
+  const std::vector<int> moving = MovingHandleOfVertices(problem);
+  return ReachedUnknowns(*problem.Mesh, HeldVertices(problem, hold, moving), moving);
+}
+
+Eigen::VectorXd SquaredSoftWeights(
+  const HandleProblem& problem, const std::vector<char>& isUnknown, Hold hold)
+{
+  const std::vector<int> moving = MovingHandleOfVertices(problem);
+  Eigen::VectorXd squared = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(isUnknown.size()));
+  for (std::size_t v = 0; v < isUnknown.size(); ++v)
+  {
+    const double weight = HoldWeight(problem, static_cast<int>(v));
+    if (isUnknown[v] && problem.Handle[v] > 0 && std::isfinite(weight) &&
+      (hold == Hold::AllHandles || moving[v] < 0))
+    {
+      squared[static_cast<Eigen::Index>(v)] = weight * weight;
+    }
+  }
+  return squared;
+}
+
+Eigen::Vector3d HandleTarget(
+  const HandleProblem& problem, const HandleTargets& targets, int vertex, int handle)
+{
+  const Eigen::Vector3d rest = problem.Rest->row(vertex);
+  if (handle < 0)
+  {
+    return rest;
+  }
+  if (targets.Positions.rows())
+  {
+    return targets.Positions.row(vertex);
+  }
+  return targets.Motions[handle].Linear * rest + targets.Motions[handle].Translation;
+}
+
+Eigen::Matrix3d HandleTransform(const HandleTargets& targets, int vertex, int handle)
+{
+  if (handle < 0)
+  {
+    return Eigen::Matrix3d::Identity();
+  }
+  return targets.Transforms.rows() ? Eigen::Matrix3d(MatrixAt(targets.Transforms, vertex))
+                                   : targets.Motions[handle].Linear;
+}
+
+Points HandlePositions(
+  const HandleProblem& problem, const HandleTargets& targets, const std::vector<int>& moving)
+{
+  Points positions = *problem.Rest;
+  for (int v = 0; v < problem.Mesh->NumberOfVertices(); ++v)
+  {
+    if (moving[v] >= 0 && problem.Mesh->IsUsed(v))
+    {
+      positions.row(v) = HandleTarget(problem, targets, v, moving[v]).transpose();
+    }
+  }
+  return positions;
+}
+
+HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
+  std::shared_ptr<const Eigen::VectorXd> edgeWeights, Hold hold, SolverBackend backend,
+  const ExecutionContext& context)
+  : MovingCount(static_cast<int>(problem.Moving.size()))
+  , Solver(backend)
+{
+  const TriangleMesh& mesh = *problem.Mesh;
+  const int numberOfVertices = mesh.NumberOfVertices();
+  const std::vector<int> moving = MovingHandleOfVertices(problem);
+
+  const std::vector<char> isUnknown = UnknownVertices(problem, hold);
+  const Eigen::VectorXd soft = cartan::SquaredSoftWeights(problem, isUnknown, hold);
+
+  std::vector<int> local(numberOfVertices, -1);
+  const auto number = [&](int v)
+  {
+    if (local[v] < 0)
+    {
+      local[v] = this->NumberOfLocals();
+      this->Vertices.push_back(v);
+      this->MovingHandles.push_back(moving[v]);
+      this->SquaredSoftWeights.push_back(soft[v]);
+    }
+    return local[v];
+  };
+  for (int v = 0; v < numberOfVertices; ++v)
+  {
+    if (isUnknown[v])
+    {
+      number(v);
+    }
+  }
+  this->UnknownCount = this->NumberOfLocals();
+  this->EdgeOffsets.reserve(this->UnknownCount + 1);
+  this->EdgeOffsets.push_back(0);
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    const int v = this->Vertices[i];
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      this->Edges.push_back({ number(mesh.Neighbor(d)), (*edgeWeights)[d] });
+    }
+    this->EdgeOffsets.push_back(static_cast<int>(this->Edges.size()));
+  }
+  context.Report(0.1);
+
+  // The system over all locals, with the held ones fixed.
+  SparseMatrix matrix(this->NumberOfLocals(), this->NumberOfLocals());
+  matrix.reserve(this->Edges.size() + this->NumberOfLocals());
+  std::vector<std::vector<std::pair<int, double>>> heldColumns(
+    this->NumberOfLocals() - this->UnknownCount);
+  std::vector<std::pair<int, double>> column;
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    column.clear();
+    double sum = 0.0;
+    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
+    {
+      column.emplace_back(edge->Neighbor, -edge->Weight);
+      sum += edge->Weight;
+      if (edge->Neighbor >= this->UnknownCount)
+      {
+        heldColumns[edge->Neighbor - this->UnknownCount].emplace_back(i, -edge->Weight);
+      }
+    }
+    column.emplace_back(i, sum);
+    std::sort(column.begin(), column.end());
+    matrix.startVec(i);
+    for (const auto& [row, value] : column)
+    {
+      matrix.insertBack(row, i) = value;
+    }
+  }
+  for (std::size_t held = 0; held < heldColumns.size(); ++held)
+  {
+    const int c = this->UnknownCount + static_cast<int>(held);
+    matrix.startVec(c);
+    for (const auto& [row, value] : heldColumns[held])
+    {
+      matrix.insertBack(row, c) = value;
+    }
+  }
+  matrix.finalize();
+
+  std::vector<char> isFixed(this->NumberOfLocals(), 0);
+  std::fill(isFixed.begin() + this->UnknownCount, isFixed.end(), 1);
+  Eigen::VectorXd stiffness = 0.5 *
+    Eigen::Map<const Eigen::VectorXd>(
+      this->SquaredSoftWeights.data(), static_cast<Eigen::Index>(this->SquaredSoftWeights.size()));
+  this->Solver.Factorize(matrix, isFixed, stiffness, this->Vertices, context.Part(0.1, 1.0));
+}
+
+std::vector<HandleLaplacian::Triangle> HandleLaplacian::Triangles(
+  const HandleProblem& problem) const
+{
+  const TriangleMesh& mesh = *problem.Mesh;
+  const Points cornerWeights = CornerWeights(mesh, *problem.Rest, problem.Weights);
+  std::vector<int> local(mesh.NumberOfVertices(), -1);
+  for (int i = 0; i < this->NumberOfLocals(); ++i)
+  {
+    local[this->Vertices[i]] = i;
+  }
+  std::vector<Triangle> triangles;
+  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const Eigen::Vector3i corners(local[mesh.GetTriangles()(t, 0)],
+      local[mesh.GetTriangles()(t, 1)], local[mesh.GetTriangles()(t, 2)]);
+    if (corners.minCoeff() >= 0 && corners.minCoeff() < this->UnknownCount)
+    {
+      triangles.push_back({ corners, cornerWeights.row(t).transpose(), t });
+    }
+  }
+  return triangles;
+}
+
+Field HandleLaplacian::HarmonicFields() const
+{
+  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(this->UnknownCount, this->MovingCount);
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
+    {
+      const int handle = this->MovingHandles[edge->Neighbor];
+      if (edge->Neighbor >= this->UnknownCount && handle >= 0)
+      {
+        rightHandSide(i, handle) += edge->Weight;
+      }
+    }
+    if (this->MovingHandles[i] >= 0)
+    {
+      rightHandSide(i, this->MovingHandles[i]) += 0.5 * this->SquaredSoftWeights[i];
+    }
+  }
+  Field fields = Field::Zero(this->NumberOfLocals(), this->MovingCount);
+  fields.topRows(this->UnknownCount) = this->Solve(rightHandSide);
+  for (int i = this->UnknownCount; i < this->NumberOfLocals(); ++i)
+  {
+    if (this->MovingHandles[i] >= 0)
+    {
+      fields(i, this->MovingHandles[i]) = 1.0;
+    }
+  }
+  return fields;
+}
+}

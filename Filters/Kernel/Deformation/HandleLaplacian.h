@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Algebra/ConstrainedSolver.h"
+#include "Deformation/HandleProblem.h"
+
+#include <vector>
+
+namespace cartan
+{
+enum class Hold
+{
+  AllHandles, ///< every handle is held
+  PinnedOnly  ///< moving handles are unknown, only pinned ones are held
+};
+
+/// Which vertices are unknown when handles are held: those not held that a
+/// moving handle reaches through vertices not held. Softly held ones are
+/// unknown. #V.
+std::vector<char> UnknownVertices(const HandleProblem& problem, Hold hold);
+
+/// w^2 where an unknown vertex is held softly, else 0: #V.
+Eigen::VectorXd SquaredSoftWeights(
+  const HandleProblem& problem, const std::vector<char>& isUnknown, Hold hold);
+
+/// Index of each vertex's handle in HandleProblem::Moving, -1 for pinned and
+/// free vertices: #V.
+std::vector<int> MovingHandleOfVertices(const HandleProblem& problem);
+
+/// Where a handle's vertex is to go; handle -1 is pinned.
+Eigen::Vector3d HandleTarget(
+  const HandleProblem& problem, const HandleTargets& targets, int vertex, int handle);
+
+/// The linear map that such a vertex is to go through; the identity for -1.
+Eigen::Matrix3d HandleTransform(const HandleTargets& targets, int vertex, int handle);
+
+/// The rest positions with all vertices of moving handles where they are to go,
+/// also those that are held softly or not at all: #V x 3. `moving` is
+/// MovingHandleOfVertices.
+Points HandlePositions(
+  const HandleProblem& problem, const HandleTargets& targets, const std::vector<int>& moving);
+
+/// The Laplacian system on the free vertices that moving handles can reach, the
+/// held ones eliminated. It is factorized once and serves everything that is
+/// harmonic or nearly so: frames, angles and positions.
+///
+/// Its *local* numbering has the unknown vertices first, then the held vertices
+/// next to them. Free vertices that no moving handle reaches through free
+/// vertices are not in it and cost nothing.
+class HandleLaplacian
+{
+public:
+  /// `edgeWeights` (#D) must be symmetric. Throws Error(SingularSystem) when an
+  /// unknown vertex reaches no held one.
+  HandleLaplacian(const HandleProblem& problem, std::shared_ptr<const Eigen::VectorXd> edgeWeights,
+    Hold hold, SolverBackend backend, const ExecutionContext& context);
+
+  int NumberOfUnknowns() const { return this->UnknownCount; }
+  int NumberOfLocals() const { return static_cast<int>(this->Vertices.size()); }
+
+  /// The mesh's vertex of a local one, and the index of its handle in
+  /// HandleProblem::Moving; -1 for pinned and free vertices.
+  int Vertex(int local) const { return this->Vertices[local]; }
+  int MovingHandle(int local) const { return this->MovingHandles[local]; }
+
+  /// w^2 of a softly held unknown, 0 elsewhere. Its half is the stiffness in L,
+  /// because L stands for both directions of each edge.
+  double SquaredSoftWeight(int local) const { return this->SquaredSoftWeights[local]; }
+
+  /// The part of the one-ring of an unknown local vertex: its edges to local
+  /// vertices, which are all.
+  struct Edge
+  {
+    int Neighbor; ///< local
+    double Weight;
+  };
+  const Edge* EdgesBegin(int unknown) const
+  {
+    return this->Edges.data() + this->EdgeOffsets[unknown];
+  }
+  const Edge* EdgesEnd(int unknown) const
+  {
+    return this->Edges.data() + this->EdgeOffsets[unknown + 1];
+  }
+
+  /// A triangle with an unknown corner: its corners in local vertices, and what
+  /// it adds to the weight of the edge opposite to each (CornerWeights).
+  struct Triangle
+  {
+    Eigen::Vector3i Corners;
+    Eigen::Vector3d Weights;
+    int Id; ///< the mesh's triangle
+  };
+
+  /// All triangles around the unknowns, with HandleProblem::Weights.
+  std::vector<Triangle> Triangles(const HandleProblem& problem) const;
+
+  /// The functions that are 1 on one handle of HandleProblem::Moving and 0 on
+  /// all others and the pinned ones, harmonic elsewhere: #locals x #Moving.
+  Field HarmonicFields() const;
+
+  /// Solves L x = b: `rightHandSide` has a row per unknown and already contains
+  /// what held neighbours and soft targets add. Returns #unknowns x k.
+  Eigen::MatrixXd Solve(const Eigen::MatrixXd& rightHandSide) const
+  {
+    return this->Solver.SolveFree(rightHandSide);
+  }
+
+  int GetNumberOfFactorizations() const { return this->Solver.GetNumberOfFactorizations(); }
+
+private:
+  std::vector<int> Vertices;
+  std::vector<int> MovingHandles;
+  std::vector<double> SquaredSoftWeights;
+  int UnknownCount = 0;
+  int MovingCount = 0;
+  std::vector<int> EdgeOffsets;
+  std::vector<Edge> Edges;
+  ConstrainedSolver Solver;
+};
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Differential/Laplacian.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cartan
+{
+/// What stays the same while handles are dragged. A *handle* k >= 1 is the set
+/// of vertices that a user holds as one.
+struct HandleProblem
+{
+  std::shared_ptr<const TriangleMesh> Mesh;
+  std::shared_ptr<const Points> Rest; ///< #V x 3, best centred on the origin
+  std::vector<int> Handle;            ///< #V, the handle of each vertex; 0 is free
+  /// The handles that may move, in increasing order. The others keep their
+  /// place: they are pinned.
+  std::vector<int> Moving;
+  /// Empty, or #V weights of the handles' vertices: 0 does not hold, infinity
+  /// holds exactly, w in between adds w^2 |value - target|^2 to the sum of
+  /// squared residuals over both directions of each edge.
+  Eigen::VectorXd SoftWeights;
+  /// Of the fields that spread from handle to handle, such as frames.
+  LaplacianWeights Weights = LaplacianWeights::Cotangent;
+  /// Of the positions. The same as Weights need one factorization less.
+  LaplacianWeights PositionWeights = LaplacianWeights::Cotangent;
+  /// Whether negative weights of edges count as zero.
+  bool ClampWeights = false;
+  /// Off: the frames of moving handles follow their motions, and the surface
+  /// finds its place from the pinned ones alone.
+  bool ConstrainPositions = true;
+};
+
+/// x -> Linear x + Translation for one handle.
+struct HandleMotion
+{
+  Eigen::Matrix3d Linear = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d Translation = Eigen::Vector3d::Zero();
+  /// Axis times angle in radians of the rotation in Linear, of any length: more
+  /// than 2 pi means laps. Used by methods that see rotations as angles.
+  Eigen::Vector3d RotationVector = Eigen::Vector3d::Zero();
+};
+
+/// What changes from one motion to the next.
+struct HandleTargets
+{
+  std::vector<HandleMotion> Motions; ///< one per HandleProblem::Moving
+  /// Instead of Motions, vertex by vertex: empty or #V rows, read at the
+  /// vertices of moving handles. Positions replace where a motion moves a
+  /// vertex, Transforms its linear part; RotationVectors, in radians, replace
+  /// Transforms for methods that see rotations as angles.
+  Points Positions;
+  Matrices Transforms;
+  Points RotationVectors;
+
+  bool IsPerVertex() const { return this->Positions.rows() || this->Transforms.rows(); }
+};
+
+struct DeformedSurface
+{
+  Points Positions; ///< #V x 3
+  /// The linear map that each vertex's neighbourhood went through: #V x 9,
+  /// filled on request. The identity where nothing moves.
+  Matrices Transforms;
+  /// The factors of the frames by a volume correction: #V, 1 where there is none.
+  Eigen::VectorXd FrameScale;
+};
+
+/// A deformation method with everything that survives from one motion to the
+/// next.
+class SurfaceDeformer
+{
+public:
+  virtual ~SurfaceDeformer() = default;
+
+  /// Writes the deformed surface into `result`, whose memory is reused.
+  virtual void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context) = 0;
+
+  virtual int GetNumberOfFactorizations() const = 0;
+
+  /// What is odd about the last result, in sentences; empty if nothing is.
+  virtual std::string GetWarning() const { return {}; }
+
+  /// The vertices that are solved for.
+  virtual int GetNumberOfFreeVertices() const = 0;
+};
+}

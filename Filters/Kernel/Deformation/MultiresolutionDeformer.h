@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Deformation/PolyharmonicSystem.h"
+
+namespace cartan
+{
+/// Two-band multiresolution editing (Kobbelt et al., Interactive Multi-Resolution
+/// Modeling on Arbitrary Meshes, 1998; Sorkine, Differential Representations for
+/// Mesh Processing, 2006, section 4.2): a smooth base that solves L^k x = 0
+/// between the handles, and the detail as offsets in the base's local frames.
+/// The base follows the handles; its frames take the detail along.
+class MultiresolutionDeformer : public SurfaceDeformer
+{
+public:
+  /// `order` is the smoothness k of the base: 1 membrane, 2 thin plate, 3.
+  MultiresolutionDeformer(HandleProblem problem, int order,
+    SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
+
+  void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context) override;
+
+  int GetNumberOfFactorizations() const override
+  {
+    return this->System.GetNumberOfFactorizations();
+  }
+  int GetNumberOfFreeVertices() const override
+  {
+    return static_cast<int>(this->System.GetUnknowns().size());
+  }
+
+private:
+  HandleProblem Problem;
+  PolyharmonicSystem System;
+  Points RestBase; ///< #V x 3
+};
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Deformation/PoissonDeformer.h"
+
+#include "Mesh/GeodesicDistance.h"
+#include "Deformation/MotionBlend.h"
+
+#include <cmath>
+
+namespace cartan
+{
+namespace
+{
+Field GeodesicWeights(
+  const HandleProblem& problem, const HandleLaplacian& frames, const ExecutionContext& context)
+{
+  const TriangleMesh& mesh = *problem.Mesh;
+  const std::vector<int> moving = MovingHandleOfVertices(problem);
+  const int numberOfMoving = static_cast<int>(problem.Moving.size());
+  // The pinned ones first, then each moving handle.
+  std::vector<std::vector<int>> sources(numberOfMoving + 1);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (problem.Handle[v] > 0 && mesh.IsUsed(v))
+    {
+      sources[moving[v] + 1].push_back(v);
+    }
+  }
+  Field distances(frames.NumberOfLocals(), numberOfMoving + 1);
+  for (int k = 0; k <= numberOfMoving; ++k)
+  {
+    const Eigen::VectorXd distance = GeodesicDistance(mesh, *problem.Rest, sources[k]);
+    for (int i = 0; i < frames.NumberOfLocals(); ++i)
+    {
+      distances(i, k) = distance[frames.Vertex(i)];
+    }
+    context.Report(static_cast<double>(k) / (numberOfMoving + 1));
+  }
+  Field weights = Field::Zero(frames.NumberOfLocals(), numberOfMoving);
+  for (int i = 0; i < frames.NumberOfLocals(); ++i)
+  {
+    Eigen::Index nearest = 0;
+    if (distances.row(i).minCoeff(&nearest) == 0.0)
+    {
+      if (nearest > 0)
+      {
+        weights(i, nearest - 1) = 1.0;
+      }
+      continue;
+    }
+    // An infinite distance has no influence.
+    const double sum = distances.row(i).cwiseInverse().sum();
+    for (int k = 0; k < numberOfMoving; ++k)
+    {
+      weights(i, k) = 1.0 / (distances(i, k + 1) * sum);
+    }
+  }
+  return weights;
+}
+}
+
+PoissonDeformer::PoissonDeformer(HandleProblem problem, Propagation propagation,
+  SolverBackend backend, const ExecutionContext& context)
+  : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.6))
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const HandleLaplacian& frames = *this->Frames;
+  const Field ofLocals = propagation == Propagation::Harmonic
+    ? frames.HarmonicFields()
+    : GeodesicWeights(this->Problem, frames, context.Part(0.6, 1.0));
+  this->Weights.setZero(mesh.NumberOfVertices(), ofLocals.cols());
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    this->Weights(held.Vertex, held.Handle) = 1.0;
+  }
+  for (int i = 0; i < frames.NumberOfLocals(); ++i)
+  {
+    this->Weights.row(frames.Vertex(i)) = ofLocals.row(i);
+  }
+  for (const HandleLaplacian::Triangle& triangle : this->Positions->Triangles(this->Problem))
+  {
+    this->Triangles.push_back(triangle.Id);
+  }
+  this->TriangleTransforms = Identities(mesh.NumberOfTriangles());
+  context.Report(1.0);
+}
+
+void PoissonDeformer::ComputeTransforms(
+  const HandleTargets& targets, const ExecutionContext& context)
+{
+  if (targets.IsPerVertex() || targets.RotationVectors.rows())
+  {
+    throw Error(ErrorCode::BadInput,
+      "Poisson editing spreads one motion per handle, not arrays of rotations or transforms: give "
+      "each handle a motion, or choose another method.");
+  }
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    MatrixAt(this->Transforms, held.Vertex) = targets.Motions[held.Handle].Linear;
+  }
+  const MotionBlend blend(targets.Motions);
+  const HandleLaplacian& frames = *this->Frames;
+  context.For(static_cast<int>(this->Triangles.size()),
+    [&](int begin, int end)
+    {
+      Eigen::RowVectorXd weights(this->Weights.cols());
+      for (int i = begin; i < end; ++i)
+      {
+        const auto corners = this->Problem.Mesh->GetTriangles().row(this->Triangles[i]);
+        weights = (this->Weights.row(corners[0]) + this->Weights.row(corners[1]) +
+                    this->Weights.row(corners[2])) /
+          3.0;
+        MatrixAt(this->TriangleTransforms, this->Triangles[i]) = blend.At(weights.data());
+      }
+    });
+  context.For(frames.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        const int v = frames.Vertex(i);
+        MatrixAt(this->Transforms, v) = blend.At(this->Weights.row(v).data());
+      }
+    });
+}
+}

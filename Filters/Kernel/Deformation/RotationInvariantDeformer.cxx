@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Deformation/RotationInvariantDeformer.h"
+
+#include "Algebra/Rotation.h"
+
+#include <cmath>
+
+namespace cartan
+{
+namespace
+{
+bool IsRotation(const Eigen::Matrix3d& matrix)
+{
+  // 1e-9 is far above rounding and far below what anyone sees.
+  return (matrix.transpose() * matrix).isApprox(Eigen::Matrix3d::Identity(), 1e-9) &&
+    matrix.determinant() > 0.0;
+}
+
+}
+
+RotationInvariantDeformer::RotationInvariantDeformer(
+  HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
+  : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.8))
+  , Harmonic(this->Frames->HarmonicFields())
+{
+  context.Report(1.0);
+}
+
+bool RotationInvariantDeformer::UsesRotations(const HandleTargets& targets) const
+{
+  if (this->Projection != FrameProjection::Automatic)
+  {
+    return this->Projection == FrameProjection::Rotation;
+  }
+  bool areAllIdentities = true;
+  bool areAllRotations = true;
+  const auto look = [&](const Eigen::Matrix3d& linear)
+  {
+    // The identity needs no projection: its blends are the identity.
+    areAllIdentities = areAllIdentities && linear.isIdentity(1e-15);
+    areAllRotations = areAllRotations && IsRotation(linear);
+  };
+  if (targets.Transforms.rows())
+  {
+    for (const HandleVertex& held : this->HandleVertices)
+    {
+      look(MatrixAt(targets.Transforms, held.Vertex));
+    }
+  }
+  else
+  {
+    for (const HandleMotion& motion : targets.Motions)
+    {
+      look(motion.Linear);
+    }
+  }
+  return areAllRotations && !areAllIdentities;
+}
+
+void RotationInvariantDeformer::ComputeTransforms(
+  const HandleTargets& targets, const ExecutionContext& context)
+{
+  const bool project = this->UsesRotations(targets);
+  const auto projected = [project](const Eigen::Matrix3d& matrix)
+  { return project ? ProjectOnRotations(matrix) : matrix; };
+
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    MatrixAt(this->Transforms, held.Vertex) =
+      projected(HandleTransform(targets, held.Vertex, held.Handle));
+  }
+
+  const HandleLaplacian& frames = *this->Frames;
+  if (targets.Transforms.rows() == 0)
+  {
+    this->BlendMotions(targets, project, context);
+    return;
+  }
+
+  // R - I is harmonic with the values that the held vertices give.
+  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(frames.NumberOfUnknowns(), 9);
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  const Eigen::Map<const Eigen::Matrix<double, 1, 9>> identityRow(identity.data());
+  for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
+  {
+    for (const auto* edge = frames.EdgesBegin(i); edge != frames.EdgesEnd(i); ++edge)
+    {
+      if (edge->Neighbor >= frames.NumberOfUnknowns())
+      {
+        rightHandSide.row(i) +=
+          edge->Weight * (this->Transforms.row(frames.Vertex(edge->Neighbor)) - identityRow);
+      }
+    }
+    if (frames.MovingHandle(i) >= 0)
+    {
+      rightHandSide.row(i) += 0.5 * frames.SquaredSoftWeight(i) *
+        (targets.Transforms.row(frames.Vertex(i)) - identityRow);
+    }
+  }
+  const Eigen::MatrixXd solution = frames.Solve(rightHandSide);
+  context.For(frames.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        const Eigen::Matrix<double, 9, 1> difference = solution.row(i).transpose();
+        MatrixAt(this->Transforms, frames.Vertex(i)) =
+          projected(identity + Eigen::Map<const Eigen::Matrix3d>(difference.data()));
+      }
+    });
+}
+
+void RotationInvariantDeformer::BlendMotions(
+  const HandleTargets& targets, bool project, const ExecutionContext& context)
+{
+  const HandleLaplacian& frames = *this->Frames;
+  const std::vector<HandleMotion>& motions = targets.Motions;
+  const int numberOfMoving = static_cast<int>(motions.size());
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+
+  std::vector<Eigen::Vector3d> rotationVectors;
+  bool areAllRotations = true;
+  for (const HandleMotion& motion : motions)
+  {
+    rotationVectors.push_back(VectorFromRotation(ProjectOnRotations(motion.Linear)));
+    areAllRotations = areAllRotations && IsRotation(motion.Linear);
+  }
+  Eigen::Vector3d axis;
+  if (project && areAllRotations && FindSharedAxis(rotationVectors, axis))
+  {
+    // A blend of rotations about one axis n is n n^T + c (I - n n^T) + s [n]x
+    // with the blended cosine and sine, and its projection has them normalized.
+    const Eigen::Matrix3d along = axis * axis.transpose();
+    const Eigen::Matrix3d across = identity - along;
+    Eigen::Matrix3d turn;
+    turn << 0.0, -axis[2], axis[1], axis[2], 0.0, -axis[0], -axis[1], axis[0], 0.0;
+    std::vector<double> cosines;
+    std::vector<double> sines;
+    for (const Eigen::Vector3d& vector : rotationVectors)
+    {
+      cosines.push_back(std::cos(vector.dot(axis)));
+      sines.push_back(std::sin(vector.dot(axis)));
+    }
+    context.For(frames.NumberOfUnknowns(),
+      [&](int begin, int end)
+      {
+        for (int i = begin; i < end; ++i)
+        {
+          double cosine = 1.0;
+          double sine = 0.0;
+          for (int k = 0; k < numberOfMoving; ++k)
+          {
+            cosine += this->Harmonic(i, k) * (cosines[k] - 1.0);
+            sine += this->Harmonic(i, k) * sines[k];
+          }
+          const double length = std::hypot(cosine, sine);
+          MatrixAt(this->Transforms, frames.Vertex(i)) = length > 0.0
+            ? Eigen::Matrix3d(along + cosine / length * across + sine / length * turn)
+            : identity;
+        }
+      });
+    return;
+  }
+  context.For(frames.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        Eigen::Matrix3d blend = identity;
+        for (int k = 0; k < numberOfMoving; ++k)
+        {
+          blend += this->Harmonic(i, k) * (motions[k].Linear - identity);
+        }
+        MatrixAt(this->Transforms, frames.Vertex(i)) = project ? ProjectOnRotations(blend) : blend;
+      }
+    });
+}
+
+void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& context)
+{
+  const HandleLaplacian& system = *this->Positions;
+  const Points& rest = *this->Problem.Rest;
+  const int numberOfUnknowns = system.NumberOfUnknowns();
+  const int numberOfMoving = static_cast<int>(this->Problem.Moving.size());
+  // b(h_k I) with the handle k in its rest place and all others at the origin.
+  Eigen::MatrixXd rightHandSide(numberOfUnknowns, 3 * numberOfMoving);
+  context.For(numberOfUnknowns,
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        for (int k = 0; k < numberOfMoving; ++k)
+        {
+          Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+          for (const auto* edge = system.EdgesBegin(i); edge != system.EdgesEnd(i); ++edge)
+          {
+            const int j = edge->Neighbor;
+            const auto neighbor = rest.row(system.Vertex(j));
+            sum += 0.5 * edge->Weight * (this->Harmonic(i, k) + this->Harmonic(j, k)) *
+              (rest.row(system.Vertex(i)) - neighbor);
+            if (j >= numberOfUnknowns && system.MovingHandle(j) == k)
+            {
+              sum += edge->Weight * neighbor;
+            }
+          }
+          if (system.MovingHandle(i) == k)
+          {
+            sum += 0.5 * system.SquaredSoftWeight(i) * rest.row(system.Vertex(i));
+          }
+          rightHandSide.block<1, 3>(i, 3 * k) = sum;
+        }
+      }
+    });
+  const Eigen::MatrixXd phi = system.Solve(rightHandSide);
+  this->DragFields.resize(numberOfUnknowns, 3 + 4 * numberOfMoving);
+  for (int i = 0; i < numberOfUnknowns; ++i)
+  {
+    Eigen::RowVector3d still = rest.row(system.Vertex(i));
+    for (int k = 0; k < numberOfMoving; ++k)
+    {
+      still -= phi.block<1, 3>(i, 3 * k);
+      this->DragFields.block<1, 3>(i, 3 + 4 * k) = phi.block<1, 3>(i, 3 * k);
+      this->DragFields(i, 6 + 4 * k) = this->Harmonic(i, k);
+    }
+    this->DragFields.block<1, 3>(i, 0) = still;
+  }
+}
+
+bool RotationInvariantDeformer::DeformDirectly(
+  const HandleTargets& targets, Points& positions, const ExecutionContext& context)
+{
+  if (this->Positions != this->Frames || targets.IsPerVertex() || this->UsesRotations(targets))
+  {
+    return false;
+  }
+  if (this->DragFields.rows() == 0)
+  {
+    this->ComputeDragFields(context);
+  }
+  const int numberOfMoving = static_cast<int>(targets.Motions.size());
+  const HandleLaplacian& system = *this->Positions;
+  context.For(system.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        const double* fields = this->DragFields.data() +
+          static_cast<std::size_t>(i) * static_cast<std::size_t>(this->DragFields.cols());
+        Eigen::Vector3d position(fields[0], fields[1], fields[2]);
+        for (int k = 0; k < numberOfMoving; ++k)
+        {
+          const double* phi = fields + 3 + 4 * k;
+          position += targets.Motions[k].Linear * Eigen::Map<const Eigen::Vector3d>(phi) +
+            phi[3] * targets.Motions[k].Translation;
+        }
+        positions.row(system.Vertex(i)) = position;
+      }
+    });
+  return true;
+}
+}

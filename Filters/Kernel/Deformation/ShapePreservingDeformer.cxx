@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Deformation/ShapePreservingDeformer.h"
+
+#include "Algebra/Rotation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace cartan
+{
+namespace
+{
+constexpr double FullTurn = 2.0 * EIGEN_PI;
+
+/// W_T, the sum over the corners of 1 / (4 + |eta|^2)^2.
+double ConformalWeight(const HandleLaplacian::Triangle& triangle, const Field& eta)
+{
+  double weight = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    const double denominator = 4.0 + eta.row(triangle.Corners[c]).squaredNorm();
+    weight += 1.0 / (denominator * denominator);
+  }
+  return weight;
+}
+
+/// sum over the edges of w |eta_a - eta_b|^2.
+double DirichletEnergy(const HandleLaplacian::Triangle& triangle, const Field& eta)
+{
+  double energy = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    const int a = triangle.Corners[(c + 1) % 3];
+    const int b = triangle.Corners[(c + 2) % 3];
+    energy += triangle.Weights[c] * (eta.row(a) - eta.row(b)).squaredNorm();
+  }
+  return energy;
+}
+}
+
+ShapePreservingDeformer::ShapePreservingDeformer(
+  HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
+  : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.9))
+  , Harmonic(this->Frames->HarmonicFields())
+  , IterationSolver(backend)
+{
+  context.Report(1.0);
+}
+
+Eigen::Vector3d ShapePreservingDeformer::RotationVector(
+  const HandleTargets& targets, const HandleVertex& held) const
+{
+  return targets.RotationVectors.rows() ? Eigen::Vector3d(targets.RotationVectors.row(held.Vertex))
+                                        : targets.Motions[held.Handle].RotationVector;
+}
+
+/// S of A = R S, with the rotation R of a handle's vertex and its linear map A.
+Eigen::Matrix3d ShapePreservingDeformer::Stretch(
+  const HandleTargets& targets, const HandleVertex& held) const
+{
+  return RotationFromVector(this->RotationVector(targets, held)).transpose() *
+    HandleTransform(targets, held.Vertex, held.Handle);
+}
+
+Field ShapePreservingDeformer::Spread(const HandleTargets& targets, int components,
+  const std::function<void(const HandleVertex&, double*)>& coordinates) const
+{
+  const HandleLaplacian& frames = *this->Frames;
+  Field values = Field::Zero(frames.NumberOfLocals(), components);
+  if (targets.RotationVectors.rows() == 0 && targets.Transforms.rows() == 0)
+  {
+    Field ofHandles(static_cast<Eigen::Index>(targets.Motions.size()), components);
+    for (std::size_t k = 0; k < targets.Motions.size(); ++k)
+    {
+      coordinates({ -1, static_cast<int>(k) }, ofHandles.row(k).data());
+    }
+    values = this->Harmonic * ofHandles;
+    return values;
+  }
+  const auto target = [&](int local)
+  {
+    Eigen::RowVectorXd row(components);
+    coordinates({ frames.Vertex(local), frames.MovingHandle(local) }, row.data());
+    return row;
+  };
+  for (int i = frames.NumberOfUnknowns(); i < frames.NumberOfLocals(); ++i)
+  {
+    if (frames.MovingHandle(i) >= 0)
+    {
+      values.row(i) = target(i);
+    }
+  }
+  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(frames.NumberOfUnknowns(), components);
+  for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
+  {
+    for (const auto* edge = frames.EdgesBegin(i); edge != frames.EdgesEnd(i); ++edge)
+    {
+      if (edge->Neighbor >= frames.NumberOfUnknowns())
+      {
+        rightHandSide.row(i) += edge->Weight * values.row(edge->Neighbor);
+      }
+    }
+    if (frames.MovingHandle(i) >= 0 && frames.SquaredSoftWeight(i) > 0.0)
+    {
+      rightHandSide.row(i) += 0.5 * frames.SquaredSoftWeight(i) * target(i);
+    }
+  }
+  values.topRows(frames.NumberOfUnknowns()) = frames.Solve(rightHandSide);
+  return values;
+}
+
+void ShapePreservingDeformer::ComputeTransforms(
+  const HandleTargets& targets, const ExecutionContext& context)
+{
+  this->Iterations = 0;
+  this->Residual = 0.0;
+  this->Converged = true;
+  const HandleLaplacian& frames = *this->Frames;
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    MatrixAt(this->Transforms, held.Vertex) =
+      HandleTransform(targets, held.Vertex, held.Handle);
+  }
+
+  Eigen::Vector3d axis;
+  std::vector<Eigen::Vector3d> rotationVectors;
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    rotationVectors.push_back(this->RotationVector(targets, held));
+  }
+  this->SharedAxis = FindSharedAxis(rotationVectors, axis);
+  if (this->SharedAxis)
+  {
+    const Field angle = this->Spread(targets, 1,
+      [&](const HandleVertex& held, double* value)
+      { *value = this->RotationVector(targets, held).dot(axis); });
+    context.For(frames.NumberOfUnknowns(),
+      [&](int begin, int end)
+      {
+        for (int i = begin; i < end; ++i)
+        {
+          MatrixAt(this->Transforms, frames.Vertex(i)) =
+            Eigen::AngleAxisd(angle(i, 0), axis).toRotationMatrix();
+        }
+      });
+  }
+  else
+  {
+    IdSample tooLarge;
+    for (const HandleVertex& held : this->HandleVertices)
+    {
+      if (this->RotationVector(targets, held).norm() >= FullTurn * (1.0 - 1e-9))
+      {
+        tooLarge.Add(held.Vertex);
+      }
+    }
+    if (!tooLarge.IsEmpty())
+    {
+      throw Error(ErrorCode::BadInput,
+        "The rotations have different axes, and " +
+          tooLarge.Describe("handle point turns", "handle points turn") +
+          " by 360 degrees or more, which only rotations about one axis can do: give all handles "
+          "the same axis, or turn in several steps.");
+    }
+    Field eta = this->Spread(targets, 3,
+      [&](const HandleVertex& held, double* value)
+      {
+        const Eigen::Vector3d rotation = this->RotationVector(targets, held);
+        const double angle = rotation.norm();
+        Eigen::Map<Eigen::Vector3d>(value, 3) = angle > 0.0
+          ? Eigen::Vector3d(2.0 * std::tan(angle / 4.0) / angle * rotation)
+          : Eigen::Vector3d(Eigen::Vector3d::Zero());
+      });
+    this->Iterations = 1;
+    if (this->MaximumIterations > 1)
+    {
+      eta = this->Iterate(std::move(eta), context);
+    }
+    context.For(frames.NumberOfUnknowns(),
+      [&](int begin, int end)
+      {
+        for (int i = begin; i < end; ++i)
+        {
+          const Eigen::Vector3d direction = eta.row(i);
+          const double length = direction.norm();
+          MatrixAt(this->Transforms, frames.Vertex(i)) = RotationFromVector(length > 0.0
+              ? Eigen::Vector3d(4.0 * std::atan(length / 2.0) / length * direction)
+              : direction);
+        }
+      });
+  }
+
+  this->BlendStretches(targets);
+}
+
+void ShapePreservingDeformer::BlendStretches(const HandleTargets& targets)
+{
+  const auto isRigid = [&](const HandleVertex& held)
+  { return this->Stretch(targets, held).isIdentity(1e-9); };
+  bool areAllRigid = true;
+  if (targets.Transforms.rows())
+  {
+    areAllRigid =
+      std::all_of(this->HandleVertices.begin(), this->HandleVertices.end(), isRigid);
+  }
+  for (std::size_t k = 0; k < targets.Motions.size() && targets.Transforms.rows() == 0; ++k)
+  {
+    areAllRigid = areAllRigid && isRigid({ -1, static_cast<int>(k) });
+  }
+  if (areAllRigid)
+  {
+    return;
+  }
+  const HandleLaplacian& frames = *this->Frames;
+  const Field blends = this->Spread(targets, 9,
+    [&](const HandleVertex& held, double* value)
+    {
+      Eigen::Map<Eigen::Matrix3d>(value, 3, 3) =
+        this->Stretch(targets, held) - Eigen::Matrix3d::Identity();
+    });
+  for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
+  {
+    auto transform = MatrixAt(this->Transforms, frames.Vertex(i));
+    transform += (transform * Eigen::Map<const Eigen::Matrix3d>(blends.row(i).data())).eval();
+  }
+}
+
+double ShapePreservingDeformer::Energy(const Field& eta) const
+{
+  double energy = 0.0;
+  for (const HandleLaplacian::Triangle& triangle : this->Triangles)
+  {
+    energy += ConformalWeight(triangle, eta) * DirichletEnergy(triangle, eta);
+  }
+  return energy;
+}
+
+Field ShapePreservingDeformer::Iterate(Field eta, const ExecutionContext& context)
+{
+  if (this->Triangles.empty())
+  {
+    this->Triangles = this->Frames->Triangles(this->Problem);
+  }
+  const HandleLaplacian& frames = *this->Frames;
+  const int numberOfLocals = frames.NumberOfLocals();
+  std::vector<char> isFixed(numberOfLocals, 0);
+  std::fill(isFixed.begin() + frames.NumberOfUnknowns(), isFixed.end(), 1);
+  // Soft targets keep their strength relative to the energy near eta = 0,
+  // where W_T is 3/16.
+  Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(numberOfLocals);
+  Field softTargets = Field::Zero(numberOfLocals, 3);
+  for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
+  {
+    stiffness[i] = 3.0 / 16.0 * 0.5 * frames.SquaredSoftWeight(i);
+  }
+  if (stiffness.maxCoeff() > 0.0)
+  {
+    // What draws the harmonic field: s target = L eta + s eta.
+    for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
+    {
+      Eigen::RowVector3d pull = 0.5 * frames.SquaredSoftWeight(i) * eta.row(i);
+      for (const auto* edge = frames.EdgesBegin(i); edge != frames.EdgesEnd(i); ++edge)
+      {
+        pull += edge->Weight * (eta.row(i) - eta.row(edge->Neighbor));
+      }
+      softTargets.row(i) = 3.0 / 16.0 * pull;
+    }
+  }
+  // The energy whose gradient the system is, soft targets included.
+  const auto totalEnergy = [&](const Field& field)
+  {
+    const auto unknown = field.topRows(frames.NumberOfUnknowns());
+    return this->Energy(field) +
+      stiffness.head(frames.NumberOfUnknowns()).dot(unknown.rowwise().squaredNorm()) -
+      2.0 * softTargets.topRows(frames.NumberOfUnknowns()).cwiseProduct(unknown).sum();
+  };
+  Field best = eta;
+  double bestEnergy = totalEnergy(eta);
+  this->Converged = false;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (; this->Iterations < this->MaximumIterations && !this->Converged; ++this->Iterations)
+  {
+    context.Report(0.5);
+    entries.clear();
+    Field rightHandSide = softTargets;
+    for (const HandleLaplacian::Triangle& triangle : this->Triangles)
+    {
+      const Eigen::Vector3i& corners = triangle.Corners;
+      const double weight = ConformalWeight(triangle, eta);
+      const double dirichlet = DirichletEnergy(triangle, eta);
+      for (int c = 0; c < 3; ++c)
+      {
+        const int a = corners[(c + 1) % 3];
+        const int b = corners[(c + 2) % 3];
+        const double value = weight * triangle.Weights[c];
+        entries.emplace_back(a, a, value);
+        entries.emplace_back(b, b, value);
+        entries.emplace_back(a, b, -value);
+        entries.emplace_back(b, a, -value);
+        // d W_T / d eta is -4 eta / (4 + |eta|^2)^3; moved to the right.
+        const double denominator = 4.0 + eta.row(corners[c]).squaredNorm();
+        rightHandSide.row(corners[c]) += 2.0 * dirichlet /
+          (denominator * denominator * denominator) * eta.row(corners[c]);
+      }
+    }
+    SparseMatrix matrix(numberOfLocals, numberOfLocals);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    Field next = eta;
+    try
+    {
+      this->IterationSolver.Factorize(matrix, isFixed, stiffness);
+      this->IterationSolver.Solve(rightHandSide, next);
+    }
+    catch (const Error& error)
+    {
+      // Far from a solution, negative cotangents may make the system indefinite.
+      if (error.GetCode() != ErrorCode::SingularSystem)
+      {
+        throw;
+      }
+      break;
+    }
+
+    this->Residual =
+      (next - eta).cwiseAbs().maxCoeff() / std::max(next.cwiseAbs().maxCoeff(), 1e-300);
+    eta = std::move(next);
+    const double energy = totalEnergy(eta);
+    if (!(energy < 1e300))
+    {
+      break;
+    }
+    this->Converged = this->Residual <= this->Tolerance;
+    // A fixed point need not be followed downhill all the way.
+    if (energy < bestEnergy || this->Converged)
+    {
+      best = eta;
+      bestEnergy = energy;
+    }
+  }
+  if (!this->Converged)
+  {
+    std::ostringstream warning;
+    warning << "The rotation field has not converged: after " << this->Iterations
+            << " iterations the last change was " << this->Residual
+            << " of the largest value. The best field so far is used. Allow more iterations, or "
+               "turn in several steps (rotations beyond about 270 degrees about different axes do "
+               "not converge).";
+    this->Warning = warning.str();
+  }
+  return best;
+}
+}

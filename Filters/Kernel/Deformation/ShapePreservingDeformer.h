@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Deformation/FrameDeformer.h"
+
+namespace cartan
+{
+/// Deformation by the rotation field of least Dirichlet energy (Lipman et al.,
+/// Volume and Shape Preservation via Moving Frame Manipulation, 2007, section
+/// 3): of all isometries the one that changes the second fundamental form
+/// least.
+///
+/// If all rotations share an axis, the angle is harmonic (Eq. 6), of any size.
+/// Else the field is found in conformal coordinates eta = 2 tan(angle / 4) axis
+/// of SO(3), where the energy is (Eqs. 5 and 7, with w = (4 + |eta|^2)^-2)
+///
+///   E(eta) = sum over triangles of W_T Q_T,
+///   W_T = sum of w over the corners,  Q_T = sum of cot |difference of eta|^2,
+///
+/// stationary where (Eq. 8, its denominator corrected)
+///
+///   sum_r (cot a W_left + cot b W_right) (eta_j - eta_r)
+///     = 2 eta_j / (4 + |eta_j|^2)^3 sum of Q_T around j.
+///
+/// The first iterate, from eta = 0 on the right, is the harmonic eta; it needs
+/// no factorization and is close. Further ones lag W and the right-hand side
+/// and factorize each time, with the symbolic factors kept.
+///
+/// Scale and shear of a handle are blended linearly beneath the rotations.
+class ShapePreservingDeformer : public FrameDeformer
+{
+public:
+  ShapePreservingDeformer(HandleProblem problem, SolverBackend backend = SolverBackend::Automatic,
+    const ExecutionContext& context = {});
+
+  /// How many iterates of Eq. 8, >= 1, and below which change of eta, relative
+  /// to its largest value, to stop.
+  void SetIteration(int maximum, double tolerance)
+  {
+    this->MaximumIterations = maximum;
+    this->Tolerance = tolerance;
+  }
+
+  /// Of the last motion: whether all rotations shared an axis; the iterates of
+  /// Eq. 8 that were computed (0 with a shared axis); the last relative change,
+  /// and whether it fell below the tolerance. The residual of one iterate is
+  /// not known and 0.
+  bool HasSharedAxis() const { return this->SharedAxis; }
+  int GetNumberOfIterations() const { return this->Iterations; }
+  double GetResidual() const { return this->Residual; }
+  bool HasConverged() const { return this->Converged; }
+
+  int GetNumberOfFactorizations() const override
+  {
+    return FrameDeformer::GetNumberOfFactorizations() +
+      this->IterationSolver.GetNumberOfFactorizations();
+  }
+
+protected:
+  void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
+
+private:
+  Eigen::Vector3d RotationVector(const HandleTargets& targets, const HandleVertex& held) const;
+  Eigen::Matrix3d Stretch(const HandleTargets& targets, const HandleVertex& held) const;
+  Field Spread(const HandleTargets& targets, int components,
+    const std::function<void(const HandleVertex&, double*)>& coordinates) const;
+  void BlendStretches(const HandleTargets& targets);
+  Field Iterate(Field eta, const ExecutionContext& context);
+  double Energy(const Field& eta) const;
+
+  int MaximumIterations = 1;
+  double Tolerance = 1e-6;
+  bool SharedAxis = true;
+  int Iterations = 0;
+  double Residual = 0.0;
+  bool Converged = true;
+
+  Field Harmonic; ///< #locals x #Moving: h_k
+
+  /// Empty until an iteration needs them.
+  std::vector<HandleLaplacian::Triangle> Triangles;
+  ConstrainedSolver IterationSolver;
+};
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Differential/Hinges.h"
+
+namespace cartan
+{
+/// A spanning tree of each component's dual graph, in which triangles are nodes
+/// and hinges are arcs, as an order to walk in from the middle of its longest
+/// path. That start is never farther than need be, so that rounding adds up the
+/// least.
+struct DualForest
+{
+  struct Step
+  {
+    int Triangle;
+    int Parent; ///< -1 where a tree begins
+    int Hinge;  ///< between both; -1 where a tree begins
+  };
+
+  DualForest() = default;
+
+  /// The trees of the smallest sum of `weights`, one per hinge (Kruskal's). Of
+  /// hinges with the same weight the first comes first. O(#T log #T).
+  DualForest(const HingeTopology& topology, const Eigen::VectorXd& weights);
+
+  std::vector<Step> Steps;   ///< #T, parents before children, tree after tree
+  std::vector<int> Tree;     ///< #T, the number of a triangle's tree, from 0
+  std::vector<char> IsWhole; ///< per tree: whether all hinges are in it, none left out
+  int NumberOfTrees() const { return static_cast<int>(this->IsWhole.size()); }
+};
+
+/// The frames that `transitions` (see HingeTransitions) give when the trees are
+/// walked, each from the identity: #T x 9. Rotations to rounding, however long
+/// the walk.
+Matrices WalkFrames(
+  const HingeTopology& topology, const DualForest& forest, const Matrices& transitions);
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Algebra/ConstrainedSolver.h"
+#include "Differential/DiscreteForms.h"
+
+/// The two linear systems of Lipman et al., Linear Rotation-invariant
+/// Coordinates for Meshes, 2005, sections 3 and 3.1, for transitions that need
+/// not come from a surface.
+namespace cartan
+{
+/// The normal matrix of the discrete surface equations (1): 3 #V x 3 #V. With
+/// X_i = F_i^T, a 3 x 3 block of rows per vertex, the equations over the
+/// directed edges i -> j are X_j - C_ij^T X_i = 0. Transitions that are zero
+/// are left out.
+SparseMatrix FrameMatrix(const TriangleMesh& mesh, const Transitions& transitions);
+
+/// The frames that fit the transitions best in the least-squares sense, with
+/// those given where `isFixed` is non-zero: #V x 9. Raw: rotations only if the
+/// transitions are consistent. Throws Error(SingularSystem) for a component
+/// without a fixed frame. Unused vertices keep what `frames` has.
+Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
+  const std::vector<char>& isFixed, Matrices frames, ConstrainedSolver& solver,
+  const ExecutionContext& context = {});
+
+/// The same frames by conjugate gradients, without a factorization of the 3 #V
+/// matrix. `start` must be rotations near the result: seen from them the matrix
+/// is nearly three graph Laplacians, whose factors precondition it, and a
+/// handful of steps suffice; far from it hundreds are needed. `laplacian` is
+/// factorized with the vertices of `isFixed` and the unused ones fixed; the
+/// frames there are kept. Stops when the preconditioned residual is 1e-10 of
+/// that of the start. `steps`, if given, receives the number of steps; throws
+/// Error(SingularSystem) after 1000.
+Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
+  const std::vector<char>& isFixed, Matrices start, const ConstrainedSolver& laplacian,
+  int* steps = nullptr, const ExecutionContext& context = {});
+
+/// b of the normal equations L x = b that SolvePositions solves, with the graph
+/// Laplacian L: #V x 3.
+Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
+  const ExecutionContext& context = {});
+
+/// The positions that fit x_j - x_i = F_i c_ij (Eq. 5) best over all directed
+/// edges, with those given where `isFixed` is non-zero: #V x 3. `ring` are the
+/// edges in the frames of their origins (RingCoordinates). Throws
+/// Error(SingularSystem) for a component without a fixed position. Unused
+/// vertices keep what `positions` has.
+Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
+  const std::vector<char>& isFixed, Points positions, ConstrainedSolver& solver,
+  const ExecutionContext& context = {});
+}

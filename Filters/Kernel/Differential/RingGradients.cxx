@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Differential/RingGradients.h"
+
+#include "Mesh/Geometry.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+
+namespace cartan
+{
+namespace
+{
+Eigen::Vector3d MeanOfNeighbors(const TriangleMesh& mesh, const Points& points, int v)
+{
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  {
+    sum += points.row(mesh.Neighbor(d));
+  }
+  return sum.transpose() / mesh.Valence(v);
+}
+
+/// V_i V_i^T.
+Eigen::Matrix3d RingMoments(const TriangleMesh& mesh, const Points& points, int v)
+{
+  const Eigen::Vector3d mean = MeanOfNeighbors(mesh, points, v);
+  const Eigen::Vector3d own = points.row(v).transpose() - mean;
+  Eigen::Matrix3d moments = own * own.transpose();
+  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  {
+    const Eigen::Vector3d other = points.row(mesh.Neighbor(d)).transpose() - mean;
+    moments += other * other.transpose();
+  }
+  return moments;
+}
+
+bool IsDegenerate(const Eigen::Matrix3d& moments)
+{
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(moments, Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d eigenvalues = solver.eigenvalues();
+  return !(eigenvalues[0] * RingGradients::DegenerateCondition > eigenvalues[2]);
+}
+}
+
+RingGradients::RingGradients(const TriangleMesh& mesh, const Points& rest,
+  const GradientConstraints& constraints, int coherenceRings, const ExecutionContext& context)
+  : Displaced(rest)
+  , PositionColumns(mesh.NumberOfVertices(), -1)
+  , RowOfVertex(mesh.NumberOfVertices(), -1)
+{
+  this->DisplaceDegenerate(mesh, constraints, VertexNormals(mesh, rest, context));
+  context.Report(0.3);
+  this->NumberPositions(mesh, constraints);
+  this->BuildRows(mesh, constraints, context);
+  context.Report(0.6);
+  this->FindCoherentRows(mesh, constraints, coherenceRings);
+  context.Report(1.0);
+}
+
+void RingGradients::DisplaceDegenerate(
+  const TriangleMesh& mesh, const GradientConstraints& constraints, const Points& normals)
+{
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (!constraints.IsUnknown[v] || constraints.IsUntouched[v] || mesh.Valence(v) < 3 ||
+      !IsDegenerate(RingMoments(mesh, this->Displaced, v)))
+    {
+      continue;
+    }
+    // v' = v + s_disp (mean length of the edges) n, Eq. 8
+    double length = 0.0;
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      length += (this->Displaced.row(v) - this->Displaced.row(mesh.Neighbor(d))).norm();
+    }
+    this->Displaced.row(v) += Displacement * length / mesh.Valence(v) * normals.row(v);
+    ++this->DisplacedCount;
+  }
+}
+
+void RingGradients::NumberPositions(
+  const TriangleMesh& mesh, const GradientConstraints& constraints)
+{
+  const auto number = [this](int v)
+  {
+    if (this->PositionColumns[v] < 0)
+    {
+      this->PositionColumns[v] = static_cast<int>(this->Vertices.size());
+      this->Vertices.push_back(v);
+    }
+  };
+  std::vector<int> heldNeighbors;
+  std::vector<char> isFound(mesh.NumberOfVertices(), 0);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (!constraints.IsUnknown[v])
+    {
+      continue;
+    }
+    number(v);
+    this->Active.push_back(v);
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      const int neighbor = mesh.Neighbor(d);
+      if (!constraints.IsUnknown[neighbor] && !isFound[neighbor])
+      {
+        isFound[neighbor] = 1;
+        heldNeighbors.push_back(neighbor);
+      }
+    }
+  }
+  this->UnknownCount = static_cast<int>(this->Vertices.size());
+  this->Active.insert(this->Active.end(), heldNeighbors.begin(), heldNeighbors.end());
+  for (const int v : heldNeighbors)
+  {
+    number(v);
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      number(mesh.Neighbor(d));
+    }
+  }
+}
+
+void RingGradients::AddRow(int vertex, bool isGiven, const Row3& row)
+{
+  this->RowOfVertex[vertex] = this->Gradients.Count();
+  this->VertexOfRow.push_back(vertex);
+  this->IsGivenRow.push_back(isGiven);
+  this->Gradients.Entries.insert(this->Gradients.Entries.end(), row.begin(), row.end());
+  this->Gradients.FinishRow();
+}
+
+int RingGradients::AddGivenRow(int vertex)
+{
+  if (this->RowOfVertex[vertex] < 0)
+  {
+    const int column = this->NumberOfColumns();
+    this->Givens.push_back(vertex);
+    this->AddRow(vertex, true,
+      { { column, Eigen::Vector3d::UnitX() }, { column + 1, Eigen::Vector3d::UnitY() },
+        { column + 2, Eigen::Vector3d::UnitZ() } });
+  }
+  return this->RowOfVertex[vertex];
+}
+
+void RingGradients::BuildRows(const TriangleMesh& mesh,
+  const GradientConstraints& constraints, const ExecutionContext& context)
+{
+  // With u_k = v_k - v_0 and the sum over k of V~_i V_i^T written out, a
+  // neighbour k has (V_i V_i^T)^-1 (u_k - u_i / |N|) and i itself
+  // (V_i V_i^T)^-1 u_i, because the u_k of the neighbours sum to zero and the
+  // deformed mean is moved by every neighbour.
+  std::vector<Row3> rows(this->Active.size());
+  context.For(static_cast<int>(this->Active.size()),
+    [&](int begin, int end)
+    {
+      for (int a = begin; a < end; ++a)
+      {
+        const int v = this->Active[a];
+        const Eigen::Matrix3d moments = RingMoments(mesh, this->Displaced, v);
+        if (constraints.IsGiven[v] || IsDegenerate(moments))
+        {
+          continue;
+        }
+        const Eigen::Matrix3d inverse = moments.inverse();
+        const Eigen::Vector3d mean = MeanOfNeighbors(mesh, this->Displaced, v);
+        const Eigen::Vector3d own = inverse * (this->Displaced.row(v).transpose() - mean);
+        rows[a].push_back({ this->PositionColumns[v], own });
+        for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+        {
+          const int w = mesh.Neighbor(d);
+          rows[a].push_back({ this->PositionColumns[w],
+            inverse * (this->Displaced.row(w).transpose() - mean) - own / mesh.Valence(v) });
+        }
+      }
+    });
+
+  std::vector<int> borrowing;
+  for (std::size_t a = 0; a < this->Active.size(); ++a)
+  {
+    const int v = this->Active[a];
+    if (constraints.IsGiven[v])
+    {
+      this->AddGivenRow(v);
+    }
+    else if (!rows[a].empty())
+    {
+      this->AddRow(v, false, rows[a]);
+    }
+    else
+    {
+      borrowing.push_back(v);
+    }
+  }
+  // In rounds, so that the mean is over neighbours that did not borrow in the
+  // same round: the result must not depend on the order of the vertices.
+  while (!borrowing.empty())
+  {
+    std::vector<std::pair<int, Row3>> borrowed;
+    std::vector<int> left;
+    for (const int v : borrowing)
+    {
+      std::vector<int> lenders;
+      for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+      {
+        const int w = mesh.Neighbor(d);
+        if (constraints.IsGiven[w])
+        {
+          this->AddGivenRow(w);
+        }
+        if (this->RowOfVertex[w] >= 0)
+        {
+          lenders.push_back(this->RowOfVertex[w]);
+        }
+      }
+      if (lenders.empty())
+      {
+        left.push_back(v);
+        continue;
+      }
+      Row3 sum;
+      for (const int row : lenders)
+      {
+        for (const auto* entry = this->Gradients.Begin(row); entry != this->Gradients.End(row);
+             ++entry)
+        {
+          sum.push_back(
+            { entry->Column, entry->Coefficient / static_cast<double>(lenders.size()) });
+        }
+      }
+      std::sort(sum.begin(), sum.end(),
+        [](const auto& a, const auto& b) { return a.Column < b.Column; });
+      Row3 merged;
+      for (const auto& entry : sum)
+      {
+        if (!merged.empty() && merged.back().Column == entry.Column)
+        {
+          merged.back().Coefficient += entry.Coefficient;
+        }
+        else
+        {
+          merged.push_back(entry);
+        }
+      }
+      borrowed.emplace_back(v, std::move(merged));
+    }
+    if (borrowed.empty())
+    {
+      IdSample lost;
+      for (const int v : left)
+      {
+        lost.Add(v);
+      }
+      throw Error(ErrorCode::BadInput,
+        "No deformation gradient is defined at " + lost.Describe("point", "points") +
+          ": their triangles have no area or too few neighbours. Repair them, mark them as part "
+          "of a handle, or hold the handles' transforms.");
+    }
+    for (const auto& [v, row] : borrowed)
+    {
+      this->AddRow(v, false, row);
+    }
+    borrowing = std::move(left);
+  }
+}
+
+void RingGradients::FindCoherentRows(
+  const TriangleMesh& mesh, const GradientConstraints& constraints, int rings)
+{
+  std::vector<int> seenFrom(mesh.NumberOfVertices(), -1);
+  std::vector<int> reached;
+  const int numberOfRows = this->Gradients.Count();
+  this->Coherent.resize(numberOfRows);
+  for (int row = 0; row < numberOfRows; ++row)
+  {
+    const int v = this->VertexOfRow[row];
+    if (this->IsGivenRow[row])
+    {
+      continue;
+    }
+    reached.assign(1, v);
+    seenFrom[v] = v;
+    std::size_t begin = 0;
+    for (int ring = 0; ring < rings; ++ring)
+    {
+      const std::size_t end = reached.size();
+      for (; begin < end; ++begin)
+      {
+        for (int d = mesh.RingBegin(reached[begin]); d < mesh.RingEnd(reached[begin]); ++d)
+        {
+          const int w = mesh.Neighbor(d);
+          if (seenFrom[w] != v)
+          {
+            seenFrom[w] = v;
+            reached.push_back(w);
+          }
+        }
+      }
+    }
+    this->Coherent[row].reserve(reached.size() - 1);
+    for (std::size_t i = 1; i < reached.size(); ++i)
+    {
+      const int w = reached[i];
+      const int other = constraints.IsGiven[w] ? this->AddGivenRow(w) : this->RowOfVertex[w];
+      if (other < 0)
+      {
+        continue;
+      }
+      this->Coherent[row].push_back(other);
+      if (this->IsGivenRow[other])
+      {
+        this->Coherent.resize(this->Gradients.Count());
+        this->Coherent[other].push_back(row);
+      }
+    }
+  }
+  this->Coherent.resize(this->Gradients.Count());
+}
+}

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/ExecutionContext.h"
+#include "Mesh/TriangleMesh.h"
+
+#include <algorithm>
+#include <functional>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace cartan
+{
+/// Rows of a sparse matrix whose entries are of type Value.
+template <typename Value>
+struct SparseRows
+{
+  struct Entry
+  {
+    int Column;
+    Value Coefficient;
+  };
+  std::vector<std::size_t> Offsets = { 0 };
+  std::vector<Entry> Entries;
+
+  int Count() const { return static_cast<int>(this->Offsets.size()) - 1; }
+  const Entry* Begin(int row) const { return this->Entries.data() + this->Offsets[row]; }
+  const Entry* End(int row) const { return this->Entries.data() + this->Offsets[row + 1]; }
+  void Add(int column, const Value& value) { this->Entries.push_back({ column, value }); }
+  void FinishRow() { this->Offsets.push_back(this->Entries.size()); }
+
+  /// The same matrix by columns: row and column change places.
+  SparseRows Transposed(int numberOfColumns) const
+  {
+    SparseRows transposed;
+    transposed.Offsets.assign(static_cast<std::size_t>(numberOfColumns) + 1, 0);
+    for (const Entry& entry : this->Entries)
+    {
+      ++transposed.Offsets[entry.Column + 1];
+    }
+    for (int column = 0; column < numberOfColumns; ++column)
+    {
+      transposed.Offsets[column + 1] += transposed.Offsets[column];
+    }
+    transposed.Entries.resize(this->Entries.size());
+    std::vector<std::size_t> next(transposed.Offsets.begin(), transposed.Offsets.end() - 1);
+    for (int row = 0; row < this->Count(); ++row)
+    {
+      for (const Entry* entry = this->Begin(row); entry != this->End(row); ++entry)
+      {
+        transposed.Entries[next[entry->Column]++] = { row, entry->Coefficient };
+      }
+    }
+    return transposed;
+  }
+};
+
+/// `count` rows; makeRange(begin, end, rows) appends those from begin to end - 1,
+/// in any order of the ranges and from any thread.
+template <typename Value>
+SparseRows<Value> MakeRows(int count, const ExecutionContext& context,
+  const std::function<void(int begin, int end, SparseRows<Value>& rows)>& makeRange)
+{
+  std::vector<std::pair<int, SparseRows<Value>>> parts;
+  std::mutex mutex;
+  context.For(count,
+    [&](int begin, int end)
+    {
+      SparseRows<Value> part;
+      makeRange(begin, end, part);
+      const std::lock_guard<std::mutex> lock(mutex);
+      parts.emplace_back(begin, std::move(part));
+    });
+  std::sort(parts.begin(), parts.end(),
+    [](const auto& a, const auto& b) { return a.first < b.first; });
+  SparseRows<Value> all;
+  for (auto& [begin, part] : parts)
+  {
+    if (begin == 0)
+    {
+      all = std::move(part);
+      continue;
+    }
+    for (int row = 0; row < part.Count(); ++row)
+    {
+      all.Offsets.push_back(all.Entries.size() + part.Offsets[row + 1]);
+    }
+    all.Entries.insert(all.Entries.end(), part.Entries.begin(), part.Entries.end());
+    part = {};
+  }
+  return all;
+}
+
+/// A row in the making: sums by column.
+template <typename Value>
+class RowSum
+{
+public:
+  explicit RowSum(int numberOfColumns)
+    : Values(numberOfColumns)
+    , LastRow(numberOfColumns, 0)
+  {
+  }
+
+  void Clear()
+  {
+    this->Touched.clear();
+    ++this->Row;
+  }
+
+  void Add(int column, const Value& value)
+  {
+    if (this->LastRow[column] == this->Row)
+    {
+      this->Values[column] += value;
+      return;
+    }
+    this->LastRow[column] = this->Row;
+    this->Values[column] = value;
+    this->Touched.push_back(column);
+  }
+
+  /// The columns that were added to, in the order of that.
+  std::vector<int>& Columns() { return this->Touched; }
+  const Value& At(int column) const { return this->Values[column]; }
+
+private:
+  std::vector<Value> Values;
+  std::vector<int> LastRow;
+  std::vector<int> Touched;
+  int Row = 0; // counts from 1: LastRow starts with 0
+};
+
+/// What is known of each vertex before deformation gradients are set up: #V each.
+struct GradientConstraints
+{
+  std::vector<char> IsUnknown;   ///< its position is solved for
+  std::vector<char> IsGiven;     ///< its gradient is not made from positions but given
+  std::vector<char> IsUntouched; ///< it belongs to a handle and must not be displaced
+};
+
+/// The deformation gradients of Fu, Au, Tai, Effective Derivation of Similarity
+/// Transformations for Implicit Laplacian Mesh Editing, 2007, sections 3.1 and
+/// 3.3. With v_0 the mean of the neighbours of i, V_i = [v_k - v_0] and
+/// V~_i = [v~_k - v~_0], k = i and its neighbours,
+///
+///   M_i = V~_i V_i^T (V_i V_i^T)^-1                                   (Eq. 4)
+///
+/// is linear in the deformed positions v~. Where V_i V_i^T is singular, because
+/// i and its neighbours are coplanar, i is displaced along its normal (Eq. 8).
+/// That is done one vertex after the other, each tested with its neighbours
+/// where they are by then: displaced all at once, a flat part would stay flat.
+/// Vertices of handles stay; they, corners with two neighbours, and whatever
+/// stays singular, take the mean of the neighbours' gradients.
+///
+/// Gradients are rows over *columns*, numbered
+///
+///   - positions of unknown vertices, increasing,
+///   - positions of held vertices that occur,
+///   - three for each vertex of given gradient W: its columns W e_1, W e_2, W e_3,
+///
+/// which all have three values (x, y, z), so that M_i = sum_c y_c m_ic^T with
+/// y_c in R^3 the values of column c and m_ic in R^3 its coefficients.
+class RingGradients
+{
+public:
+  /// The factor s_disp of Eq. 8: sqrt 3 makes V_i V_i^T of a regular ring of six
+  /// as large along the normal as in the plane. The paper has 0.2, with which
+  /// gradients are a little more uneven on grids whose diagonals all point the
+  /// same way; elsewhere the result is all but the same from 0.2 to 10.
+  static constexpr double Displacement = 1.7320508;
+  /// The condition number of V_i V_i^T that makes a vertex degenerate (section
+  /// 3.3).
+  static constexpr double DegenerateCondition = 2.0e5;
+
+  /// `rest` is #V x 3. Throws Error(BadInput) when a part of the surface is so
+  /// degenerate that none of its vertices has a gradient.
+  RingGradients(const TriangleMesh& mesh, const Points& rest,
+    const GradientConstraints& constraints, int coherenceRings, const ExecutionContext& context);
+
+  int NumberOfUnknowns() const { return this->UnknownCount; }
+  int NumberOfPositions() const { return static_cast<int>(this->Vertices.size()); }
+  int NumberOfColumns() const
+  {
+    return this->NumberOfPositions() + 3 * static_cast<int>(this->Givens.size());
+  }
+
+  /// The mesh's vertex of a position's column, and the column of a vertex's
+  /// position; -1 where it does not occur.
+  int Vertex(int position) const { return this->Vertices[position]; }
+  int PositionColumn(int vertex) const { return this->PositionColumns[vertex]; }
+  /// The vertices of given gradient, in the order of their columns.
+  const std::vector<int>& GivenVertices() const { return this->Givens; }
+
+  /// The vertices whose one-ring has an unknown vertex: unknowns, in the order
+  /// of their columns, then held neighbours.
+  const std::vector<int>& ActiveVertices() const { return this->Active; }
+
+  /// Whether the gradient of a vertex is made from positions (or borrowed from
+  /// neighbours) and changes with the unknowns.
+  bool IsVariable(int vertex) const
+  {
+    return this->RowOfVertex[vertex] >= 0 && !this->IsGivenRow[this->RowOfVertex[vertex]];
+  }
+
+  /// A row per vertex with a gradient, given ones too, and the row of a vertex;
+  /// -1 where none is needed.
+  const SparseRows<Eigen::Vector3d>& Rows() const { return this->Gradients; }
+  int Row(int vertex) const { return this->RowOfVertex[vertex]; }
+
+  /// For each row the rows within CoherenceRings edges, but for pairs of given
+  /// gradients.
+  const std::vector<std::vector<int>>& CoherentRows() const { return this->Coherent; }
+
+  /// M of a row for the columns' values: #columns x 3.
+  Eigen::Matrix3d Evaluate(int row, const Field& values) const
+  {
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+    for (const auto* entry = this->Gradients.Begin(row); entry != this->Gradients.End(row); ++entry)
+    {
+      gradient += Eigen::Map<const Eigen::Vector3d>(values.row(entry->Column).data()) *
+        entry->Coefficient.transpose();
+    }
+    return gradient;
+  }
+
+  /// The rest positions with degenerate vertices displaced: #V x 3.
+  const Points& DisplacedRest() const { return this->Displaced; }
+  int GetNumberOfDisplacedVertices() const { return this->DisplacedCount; }
+
+private:
+  using Row3 = std::vector<SparseRows<Eigen::Vector3d>::Entry>;
+
+  void DisplaceDegenerate(const TriangleMesh& mesh, const GradientConstraints& constraints,
+    const Points& normals);
+  void NumberPositions(const TriangleMesh& mesh, const GradientConstraints& constraints);
+  void BuildRows(const TriangleMesh& mesh, const GradientConstraints& constraints,
+    const ExecutionContext& context);
+  void FindCoherentRows(
+    const TriangleMesh& mesh, const GradientConstraints& constraints, int rings);
+  int AddGivenRow(int vertex);
+  void AddRow(int vertex, bool isGiven, const Row3& row);
+
+  Points Displaced;
+  int DisplacedCount = 0;
+  int UnknownCount = 0;
+  std::vector<int> Vertices;
+  std::vector<int> PositionColumns; // #V
+  std::vector<int> Givens;
+  std::vector<int> Active;
+  std::vector<int> RowOfVertex;  // #V
+  std::vector<int> VertexOfRow;
+  std::vector<char> IsGivenRow;
+  SparseRows<Eigen::Vector3d> Gradients;
+  std::vector<std::vector<int>> Coherent;
+};
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/ExecutionContext.h"
+#include "Mesh/RayTree.h"
+#include "Mesh/TriangleMesh.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+/// Local depth, local volume and what follows from them; Lipman et al., Volume
+/// and Shape Preservation via Moving Frame Manipulation, 2007, section 4.
+namespace cartan
+{
+/// Follows a ray from a point in a unit direction. Called from several threads.
+using RayCaster = std::function<RayHit(const Eigen::Vector3d&, const Eigen::Vector3d&)>;
+
+/// What the preservation of volume needs to know of a surface at rest.
+struct VolumeModel
+{
+  /// How thick the body is under each vertex, along the inward normal; 0 in
+  /// components that enclose nothing: #V, in length units.
+  Eigen::VectorXd LocalDepth;
+  /// Which vertices' depths rays have found. The others are filled in
+  /// harmonically and count as of unknown depth.
+  std::vector<char> IsMeasured;
+  /// From the middle of the body to the vertex; zero in components that enclose
+  /// nothing: #V x 3.
+  Points Offsets;
+  /// h of Eq. 13 at rest: #V.
+  Eigen::VectorXd ColumnHeight;
+  /// Per component: whether it is closed and oriented outwards, and its volume.
+  std::vector<char> EnclosesVolume;
+  std::vector<double> Volumes;
+  /// Why some components do not take part; empty if all do.
+  std::string Warning;
+
+  bool IsEmpty() const { return this->LocalDepth.size() == 0; }
+};
+
+/// Measures the depth by a cone of rays (half angle 15 degrees) around the
+/// inward normal, the mean of those that leave the body, and places the middle
+/// of the body c = p - L / 2 N, smoothed by one implicit step (M + tau L) c' =
+/// M c, tau = .02 median(depth)^2 of the component. IsEmpty() if no component
+/// encloses volume.
+VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
+  const RayCaster& castRay, const ExecutionContext& context = {});
+
+/// How deep the column of body under a vertex is taken: min(depth / 2, r1 / 2,
+/// r2 / 2) with the positive radii of curvature r = 1 / k (section 4.2 with
+/// alpha = beta = 1/2).
+double ColumnDepth(double localDepth, double k1, double k2);
+
+/// Eq. 13 in closed form, without its cases: the volume per area of the column
+/// of body of depth phi under a surface with principal curvatures k1, k2,
+/// h = phi - (k1 + k2) phi^2 / 2 + k1 k2 phi^3 / 3.
+double ColumnHeight(double phi, double k1, double k2);
+
+/// (d Volume / d x_i) for each vertex: a third of half the one-ring's area
+/// vectors: #V x 3.
+Points VolumeGradient(const TriangleMesh& mesh, const Points& points);
+
+/// The amounts q, one per component, so that points + q * direction enclose
+/// `volumes` in the components where `takesPart` is set; 0 in the others. The
+/// volume is a cubic in q, whose root nearest to 0 is taken. Components whose
+/// direction changes no volume, or cannot reach the given one, keep 0.
+std::vector<double> VolumeClosingSteps(const TriangleMesh& mesh, const Points& points,
+  const Points& direction, const std::vector<char>& takesPart,
+  const std::vector<double>& volumes);
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/Types.h"
+
+#include <vector>
+
+namespace cartan
+{
+/// Where a ray first meets the surface.
+struct RayHit
+{
+  double Distance = -1.0; ///< in length units; negative: nowhere
+  int Triangle = -1;
+};
+
+/// Finds what a ray first meets of a surface: a tree of boxes over its
+/// triangles, each half of those above it. Where neighbours share an edge or a
+/// vertex, no ray slips between them. Does not change once it is made, and may
+/// be used from several threads.
+class RayTree
+{
+public:
+  /// Keeps a copy of the corners. Coordinates are finite. O(#T log #T).
+  RayTree(const Triangles& triangles, const Points& points);
+
+  /// The triangle that the ray from a point in a unit direction meets first, on
+  /// whichever side, its start included; of several that are equally far the
+  /// one of the smallest id. Triangles without area are not met; those that are
+  /// seen edge-on need not be, but their neighbours are. The start is at most
+  /// some hundred bounding diagonals away. O(log #T) for most surfaces.
+  RayHit FirstHit(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const;
+
+private:
+  struct Node
+  {
+    Eigen::AlignedBox3d Box;
+    int First = 0; // the first triangle of a leaf, else the second child
+    int Count = 0; // triangles of a leaf, else 0: the first child is the next node
+  };
+  struct Ray;
+
+  void Build(std::vector<Eigen::AlignedBox3d>& boxes, int begin, int end, double padding);
+
+  Eigen::Vector3d Center;               // what the coordinates below are relative to
+  std::vector<Node> Nodes;              // those below a node follow it
+  std::vector<int> Ids;                 // of the triangles in the order of the leaves: #T
+  std::vector<Eigen::Matrix3d> Corners; // in the same order, a corner per column: #T
+};
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/Error.h"
+#include "Base/Types.h"
+
+#include <string>
+#include <vector>
+
+namespace cartan
+{
+/// What is wrong with a mesh: for each defect how many and the first ids.
+/// Point ids are rows of Points, triangle ids are rows of Triangles.
+struct MeshReport
+{
+  IdSample OutOfRange;          ///< triangles that name a vertex that is not there
+  IdSample RepeatedVertex;      ///< triangles that name a vertex twice
+  IdSample NonManifoldEdges;    ///< edges of more than two triangles; the smaller end point's id
+  IdSample InconsistentEdges;   ///< edges that both triangles run through in the same direction
+  IdSample NonManifoldVertices; ///< vertices whose triangles do not form one fan
+  IdSample NonFinite;           ///< points with a NaN or infinite coordinate
+  IdSample ZeroArea;            ///< triangles without area: degenerate, but no obstacle
+  IdSample Unused;              ///< points in no triangle: no obstacle
+
+  /// Whether TriangleMesh accepts the triangles and all coordinates are finite.
+  bool IsUsable() const;
+
+  /// One sentence per obstacle with count, first ids and what to do; empty when
+  /// usable. `cellIds` maps triangles to the ids the user knows (may be empty).
+  std::string DescribeErrors(const std::vector<long long>& cellIds = {}) const;
+};
+
+/// The connectivity of an oriented triangle mesh that is a 2-manifold, possibly
+/// with boundary, in several components, and with unused vertices.
+///
+/// Everything hangs on *directed edges*: the one-ring of vertex v are the
+/// directed edges RingBegin(v) ... RingEnd(v) - 1, counter-clockwise seen from
+/// outside. The ring of a boundary vertex starts at the boundary edge that has
+/// a triangle on its left and ends at the one that has none; the ring of an
+/// interior vertex starts at an arbitrary neighbour that depends on the
+/// triangles' order only.
+class TriangleMesh
+{
+public:
+  TriangleMesh() = default;
+
+  /// O(#V + #T). Throws Error(BadInput) with MeshReport::DescribeErrors() when
+  /// the triangles are not an oriented manifold.
+  TriangleMesh(int numberOfVertices, Triangles triangles);
+
+  /// All that is wrong with the mesh. Triangles without area are those that
+  /// HasArea() in Geometry.h rejects. O(#V + #T), never throws.
+  static MeshReport Check(const Points& points, const Triangles& triangles);
+
+  int NumberOfVertices() const { return static_cast<int>(this->RingOffsets.size()) - 1; }
+  int NumberOfTriangles() const { return static_cast<int>(this->Corners.rows()); }
+  int NumberOfDirectedEdges() const { return static_cast<int>(this->Neighbors.size()); }
+  int NumberOfEdges() const { return this->NumberOfDirectedEdges() / 2; }
+  int NumberOfComponents() const { return this->ComponentCount; }
+  const Triangles& GetTriangles() const { return this->Corners; }
+
+  int RingBegin(int v) const { return this->RingOffsets[v]; }
+  int RingEnd(int v) const { return this->RingOffsets[v + 1]; }
+  int Valence(int v) const { return this->RingEnd(v) - this->RingBegin(v); }
+
+  /// Whether v is in a triangle.
+  bool IsUsed(int v) const { return this->RingEnd(v) > this->RingBegin(v); }
+
+  /// Whether v is on the boundary; false for unused vertices.
+  bool IsBoundary(int v) const
+  {
+    return this->IsUsed(v) && this->RingTriangles[this->RingEnd(v) - 1] < 0;
+  }
+
+  /// The component of v, numbered from 0 in the order of their first vertices;
+  /// -1 for unused vertices.
+  int Component(int v) const { return this->Components[v]; }
+
+  /// The vertices to fix so that nothing floats: non-zero at the first vertex of
+  /// each component and at unused ones. #V.
+  std::vector<char> Grounded() const;
+
+  /// Where the directed edge d starts and ends.
+  int Origin(int d) const { return this->Neighbors[this->Twins[d]]; }
+  int Neighbor(int d) const { return this->Neighbors[d]; }
+
+  /// The same edge in the other direction.
+  int Twin(int d) const { return this->Twins[d]; }
+
+  /// The triangle on the left of d; -1 at the boundary.
+  int LeftTriangle(int d) const { return this->RingTriangles[d]; }
+
+  /// The next directed edge counter-clockwise around the origin of d, so that
+  /// (Origin(d), Neighbor(d), Neighbor(Next(d))) is LeftTriangle(d); -1 where
+  /// there is no triangle.
+  int Next(int d) const { return this->NextAround(this->Origin(d), d); }
+  int NextAround(int origin, int d) const
+  {
+    if (this->RingTriangles[d] < 0)
+    {
+      return -1;
+    }
+    return d + 1 < this->RingEnd(origin) ? d + 1 : this->RingBegin(origin);
+  }
+
+  /// The vertex opposite to d in the triangle on its left; -1 at the boundary.
+  int Opposite(int d) const
+  {
+    const int next = this->Next(d);
+    return next < 0 ? -1 : this->Neighbors[next];
+  }
+
+private:
+  Triangles Corners;
+  std::vector<int> RingOffsets = { 0 }; // #V + 1
+  std::vector<int> Neighbors;           // #D
+  std::vector<int> RingTriangles;       // #D
+  std::vector<int> Twins;               // #D
+  std::vector<int> Components;          // #V
+  int ComponentCount = 0;
+};
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/ExecutionContext.h"
+#include "Base/Types.h"
+
+#include <vector>
+
+namespace cartan
+{
+/// Where t lies between two key parameters: Part of the way from Before to the
+/// one after it, below 0 or above 1 outside of all.
+struct KeyPlace
+{
+  int Before;
+  double Part;
+};
+
+/// `parameters` are two or more, increasing. At an inner one Part is 0.
+KeyPlace PlaceBetweenKeys(double t, const std::vector<double>& parameters);
+
+/// Numbers that are known at key parameters, in between: linear through two
+/// keys, monotone piecewise cubic with a continuous derivative through more
+/// (Fritsch and Carlson, Monotone Piecewise Cubic Interpolation, 1980), so that
+/// nothing overshoots between two keys. The slope at a key is that of the
+/// parabola through it and its neighbours, limited to three times the smaller of
+/// the two secants beside it, and zero where those differ in sign. Outside of the
+/// keys it goes on straight with the slope of the first or last one.
+///
+/// The same numbers in reverse order at the mirrored parameters give the
+/// mirrored result.
+class KeyInterpolation
+{
+public:
+  KeyInterpolation() = default;
+
+  /// `values` is m x #keys, a column per key. Throws Error(BadInput) unless there
+  /// are at least two parameters, all finite and increasing, and as many columns.
+  KeyInterpolation(std::vector<double> parameters, Field values);
+
+  /// The m numbers at t.
+  Eigen::VectorXd Evaluate(double t, const ExecutionContext& context = {}) const;
+
+  const std::vector<double>& GetParameters() const { return this->Parameters; }
+  const Field& GetValues() const { return this->Values; }
+
+private:
+  std::vector<double> Parameters;
+  Field Values;
+  Field Slopes; // m x #keys, empty for two keys
+};
+}
