@@ -414,8 +414,8 @@ Surface ReadSurface(vtkPolyData* input, const std::string& role)
   CellTriangles cells = Triangulate(input, role);
   if (cells.CellIds.empty())
   {
-    throw Error(ErrorCode::BadInput,
-      "The " + role + " has no triangles with three different points.");
+    throw Error(
+      ErrorCode::BadInput, "The " + role + " has no triangles with three different points.");
   }
 
   Surface surface;
@@ -475,8 +475,7 @@ Surface ReadSurface(vtkPolyData* input, const std::string& role)
   }
   surface.Mesh = TriangleMesh(numberOfPoints, std::move(triangles));
   surface.ReadFrom = { input->GetPoints(), input->GetPolys(), input->GetStrips(),
-    input->GetPoints()->GetMTime(), input->GetPolys()->GetMTime(),
-    input->GetStrips()->GetMTime() };
+    input->GetPoints()->GetMTime(), input->GetPolys()->GetMTime(), input->GetStrips()->GetMTime() };
   return surface;
 }
 
@@ -512,8 +511,8 @@ Surface ReadConnectivity(vtkPolyData* input, const std::string& role)
     input->GetPolys(), [firstPolygon](vtkIdType id) { return firstPolygon + id; }, cells);
   if (cells.CellIds.empty())
   {
-    throw Error(ErrorCode::BadInput,
-      "The " + role + " has no triangles with three different points.");
+    throw Error(
+      ErrorCode::BadInput, "The " + role + " has no triangles with three different points.");
   }
 
   Surface surface;
@@ -562,8 +561,7 @@ void WriteSurface(const Surface& surface, const Points& positions, vtkPolyData* 
 
   if (input->GetPointData()->GetNormals())
   {
-    ReplaceNormals(output->GetPointData(),
-      VertexNormals(surface.Mesh, surface.Positions, context),
+    ReplaceNormals(output->GetPointData(), VertexNormals(surface.Mesh, surface.Positions, context),
       VertexNormals(surface.Mesh, positions, context));
   }
   if (input->GetCellData()->GetNormals())

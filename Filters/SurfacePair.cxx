@@ -126,8 +126,8 @@ MatchedSurfaces ReadMatchedSurfaces(const std::vector<vtkPolyData*>& inputs,
     {
       best = k;
     }
-    matched.Warning += (matched.Warning.empty() || surfaces[k].Warning.empty() ? "" : " ") +
-      surfaces[k].Warning;
+    matched.Warning +=
+      (matched.Warning.empty() || surfaces[k].Warning.empty() ? "" : " ") + surfaces[k].Warning;
     matched.Origins.push_back(surfaces[k].Origin);
     matched.ReadFrom.push_back(surfaces[k].ReadFrom);
   }

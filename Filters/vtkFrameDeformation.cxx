@@ -42,8 +42,8 @@ public:
     const cartan::VolumeModel& model, const cartan::Points& positions,
     const cartan::ExecutionContext& context)
   {
-    Eigen::VectorXd volumes = Eigen::VectorXd::Constant(
-      positions.rows(), std::numeric_limits<double>::quiet_NaN());
+    Eigen::VectorXd volumes =
+      Eigen::VectorXd::Constant(positions.rows(), std::numeric_limits<double>::quiet_NaN());
     if (!model.IsEmpty())
     {
       Entry& entry = this->EntryOf(problem);
@@ -144,8 +144,8 @@ void vtkFrameDeformation::ConfigureDeformer(
   auto& frames = static_cast<cartan::FrameDeformer&>(deformer);
   frames.SetVolumeCorrection(static_cast<cartan::VolumeCorrection>(this->VolumeCorrection));
   frames.SetCloseVolume(this->CloseVolume);
-  const bool isNeeded = this->VolumeCorrection != NO_CORRECTION || this->CloseVolume ||
-    this->GenerateVolumeArrays;
+  const bool isNeeded =
+    this->VolumeCorrection != NO_CORRECTION || this->CloseVolume || this->GenerateVolumeArrays;
   if (isNeeded && !frames.GetVolumeModel())
   {
     frames.SetVolumeModel(this->Models->Find(this, frames.GetProblem(), context));
@@ -173,8 +173,8 @@ void vtkFrameDeformation::DecorateOutput(const cartan::HandleProblem& problem,
   }
   if (this->GenerateShapeDistance)
   {
-    const cartan::ShapeDistance distance = cartan::ShapeDistanceOfRotations(
-      *problem.Mesh, *problem.Rest, result.Transforms, context);
+    const cartan::ShapeDistance distance =
+      cartan::ShapeDistanceOfRotations(*problem.Mesh, *problem.Rest, result.Transforms, context);
     cartan::AddPointArray(output, "ShapeDistanceDensity", distance.Density.data(), size, 1);
     vtkNew<vtkDoubleArray> total;
     total->SetName("ShapeDistance");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFrameReconstruction.h"
 
-#include "Kernel/Differential/FrameReconstruction.h"
 #include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Differential/FrameReconstruction.h"
 #include "KernelBridge.h"
 
 #include "vtkDataArray.h"
@@ -168,8 +168,7 @@ void AddInputConstraints(vtkPolyData* input, const cartan::TriangleMesh& mesh,
     }
     constraints.IsFixed[v] = 1;
     constraints.Frames.row(v) = frames.row(v);
-    if (!constraints.Positions.row(v).allFinite() ||
-      !IsFrame(cartan::MatrixAt(frames, v)))
+    if (!constraints.Positions.row(v).allFinite() || !IsFrame(cartan::MatrixAt(frames, v)))
     {
       bad.Add(v);
     }
@@ -233,9 +232,9 @@ std::string AddSeeds(const cartan::TriangleMesh& mesh, vtkIdType seedPoint,
       }
     }
   }
-  return others.IsEmpty() ? std::string()
-                          : "The surface has " +
-      others.Describe("further component", "further components") +
+  return others.IsEmpty()
+    ? std::string()
+    : "The surface has " + others.Describe("further component", "further components") +
       " without a seed of their own; they start at the same position and frame. Hold a point of "
       "each with a constraint array.";
 }
@@ -353,14 +352,13 @@ int vtkFrameReconstruction::RequestData(
       {
         for (int v = 0; v < mesh.NumberOfVertices(); ++v)
         {
-          cartan::MatrixAt(frames, v) =
-            cartan::ProjectOnRotations(cartan::MatrixAt(frames, v));
+          cartan::MatrixAt(frames, v) = cartan::ProjectOnRotations(cartan::MatrixAt(frames, v));
         }
       }
       cartan::ConstrainedSolver positionSolver;
       const cartan::Points positions = cartan::SolvePositions(mesh, frames,
-        cartan::RingCoordinates(mesh, forms), constraints.IsFixed,
-        std::move(constraints.Positions), positionSolver, context.Part(0.7, 0.95));
+        cartan::RingCoordinates(mesh, forms), constraints.IsFixed, std::move(constraints.Positions),
+        positionSolver, context.Part(0.7, 0.95));
 
       output->ShallowCopy(input);
       vtkNew<vtkPoints> points;

@@ -191,8 +191,7 @@ void vtkHandleMotion::GetTransformRelativeTo(const double origin[3], vtkMatrix4x
   // The image of the origin, relative to the origin: L (o - c) - (o - c) + t.
   const AffineMap map = ReadMotion(this);
   const Vector fromCenter = ToVector(origin) - map.Center;
-  const Vector shift =
-    (map.Linear - Eigen::Matrix3d::Identity()) * fromCenter + map.Translation;
+  const Vector shift = (map.Linear - Eigen::Matrix3d::Identity()) * fromCenter + map.Translation;
   for (int row = 0; row < 3; ++row)
   {
     for (int column = 0; column < 3; ++column)
@@ -215,8 +214,8 @@ void vtkHandleMotion::GetRotationVector(double vector[3])
         rotation = cartan::VectorFromRotation(EulerRotation(this->BoxRotation));
         break;
       case MATRIX:
-        rotation = cartan::VectorFromRotation(
-          cartan::ProjectOnRotations(ReadMatrix(this->Matrix).Linear));
+        rotation =
+          cartan::VectorFromRotation(cartan::ProjectOnRotations(ReadMatrix(this->Matrix).Linear));
         break;
       default:
         rotation = UnwrappedRotation(this->Axis, this->Angle);
@@ -247,8 +246,8 @@ bool vtkHandleMotion::IsIdentity()
   switch (this->Mode)
   {
     case BOX:
-      return Equals(this->BoxPosition, 0.0, 0.0, 0.0) &&
-        Equals(this->BoxRotation, 0.0, 0.0, 0.0) && Equals(this->BoxScale, 1.0, 1.0, 1.0);
+      return Equals(this->BoxPosition, 0.0, 0.0, 0.0) && Equals(this->BoxRotation, 0.0, 0.0, 0.0) &&
+        Equals(this->BoxScale, 1.0, 1.0, 1.0);
     case MATRIX:
       return this->Matrix->IsIdentity();
     default:
@@ -263,8 +262,8 @@ std::string vtkHandleMotion::GetProblem()
   std::string notFinite;
   const auto check = [&notFinite](const char* name, const double* values, int count)
   {
-    if (notFinite.empty() && !std::all_of(values, values + count,
-                               [](double value) { return std::isfinite(value); }))
+    if (notFinite.empty() &&
+      !std::all_of(values, values + count, [](double value) { return std::isfinite(value); }))
     {
       notFinite = std::string(name) + " has a number that is NaN or infinite.";
     }

@@ -113,8 +113,8 @@ vtkSmartPointer<vtkDataObject> EvaluateSelection(
       throw cartan::Error(cartan::ErrorCode::BadInput, refusal + problem);
     }
   }
-  auto extractor = kind ? vtk::TakeSmartPointer(kind->NewInstance())
-                        : vtkSmartPointer<vtkExtractSelection>::New();
+  auto extractor =
+    kind ? vtk::TakeSmartPointer(kind->NewInstance()) : vtkSmartPointer<vtkExtractSelection>::New();
   vtkNew<MessageCatcher> catcher;
   for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
   {
@@ -156,8 +156,8 @@ void AddSelected(vtkPolyData* evaluated, vtkPolyData* input, PointMask& mask)
       mask[i] |= points->GetComponent(i, 0) != 0.0;
     }
   }
-  if (vtkDataArray* cells = FindInsidedness(
-        evaluated->GetCellData(), input->GetCellData(), input->GetNumberOfCells()))
+  if (vtkDataArray* cells =
+        FindInsidedness(evaluated->GetCellData(), input->GetCellData(), input->GetNumberOfCells()))
   {
     vtkNew<vtkIdList> corners;
     for (vtkIdType cell = 0; cell < cells->GetNumberOfTuples(); ++cell)
@@ -550,8 +550,8 @@ int vtkMarkHandle::RequestData(
           AddSelected(block.Evaluated, block.Input, mask);
         }
         part.Report(0.2);
-        cartan::Warn(this,
-          Grow(block.Input, this->GrowRings, this->GrowDistance, mask, part.Part(0.2, 0.9)));
+        cartan::Warn(
+          this, Grow(block.Input, this->GrowRings, this->GrowDistance, mask, part.Part(0.2, 0.9)));
 
         auto handles = CopyHandles(block.Input, this->HandleArrayName);
         marked += Mark(handles, mask, this->HandleId, this->Overwrite);
@@ -575,8 +575,7 @@ int vtkMarkHandle::RequestData(
 //------------------------------------------------------------------------------
 std::string vtkMarkHandle::DescribeEmptyRegion(bool hasSelection)
 {
-  const std::string text =
-    "No point is marked for handle " + std::to_string(this->HandleId) + ": ";
+  const std::string text = "No point is marked for handle " + std::to_string(this->HandleId) + ": ";
   if (this->RegionSource == FUNCTION && !this->Region)
   {
     return text + "RegionSource is Function, but there is no region function.";

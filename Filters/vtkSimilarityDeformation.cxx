@@ -50,11 +50,10 @@ std::unique_ptr<cartan::SurfaceDeformer> vtkSimilarityDeformation::NewDeformer(
   cartan::SimilarityDeformer::Options options;
   options.CoherenceRings = this->CoherenceRings;
   options.ConstrainTransforms = this->ConstrainHandleTransforms;
-  auto deformer = std::make_unique<cartan::SimilarityDeformer>(
-    problem, options, backend, context.Part(0.0, 0.7));
+  auto deformer =
+    std::make_unique<cartan::SimilarityDeformer>(problem, options, backend, context.Part(0.0, 0.7));
   // The other factorizations belong to the set-up, not to the first motion.
-  deformer->SetReconstruction(
-    static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));
+  deformer->SetReconstruction(static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));
   deformer->SetRefits(this->Refits);
   deformer->Prepare(context.Part(0.7, 1.0));
   return deformer;
@@ -68,8 +67,7 @@ void vtkSimilarityDeformation::ConfigureDeformer(
       static_cast<int>(cartan::SimilarityReconstruction::EdgeForm) == EDGE_FORM,
     "the enumerations agree");
   auto& similarity = static_cast<cartan::SimilarityDeformer&>(deformer);
-  similarity.SetReconstruction(
-    static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));
+  similarity.SetReconstruction(static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));
   similarity.SetScaleFeatures(this->ScaleFeatures);
   similarity.SetRefits(this->Refits);
 }

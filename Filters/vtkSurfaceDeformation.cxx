@@ -2,9 +2,9 @@
 #include "vtkSurfaceDeformation.h"
 
 #include "Kernel/Algebra/ConstrainedSolver.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/HandleCurve.h"
 #include "Kernel/Deformation/HandleProblem.h"
-#include "Kernel/Algebra/Rotation.h"
 #include "KernelBridge.h"
 #include "vtkHandleMotion.h"
 
@@ -84,8 +84,8 @@ std::vector<int> ReadHandles(
 }
 
 /// A point array as a field, required to be finite at the handles' points.
-cartan::Field ReadHandleValues(vtkPolyData* input, const std::string& name, int components,
-  const std::vector<int>& handles)
+cartan::Field ReadHandleValues(
+  vtkPolyData* input, const std::string& name, int components, const std::vector<int>& handles)
 {
   vtkDataArray* array = cartan::RequirePointArray(input, name, components);
   cartan::Field values(static_cast<Eigen::Index>(handles.size()), components);
@@ -238,8 +238,7 @@ void AddPerVertexTargets(const HandleArrays& arrays, const cartan::HandleProblem
     }
     if (arrays.Transforms.rows())
     {
-      transform =
-        Eigen::Map<const Eigen::Matrix3d>(arrays.Transforms.row(v).data()).transpose();
+      transform = Eigen::Map<const Eigen::Matrix3d>(arrays.Transforms.row(v).data()).transpose();
       targets.RotationVectors.row(v) =
         cartan::VectorFromRotation(cartan::ProjectOnRotations(transform)).transpose();
     }
@@ -254,10 +253,9 @@ bool Serves(const cartan::HandleProblem& old, const cartan::HandleProblem& probl
     old.ConstrainPositions == problem.ConstrainPositions &&
     old.SoftWeights.size() == problem.SoftWeights.size() &&
     old.SoftWeights == problem.SoftWeights &&
-    (problem.ConstrainPositions
-        ? std::includes(old.Moving.begin(), old.Moving.end(), problem.Moving.begin(),
-            problem.Moving.end())
-        : old.Moving == problem.Moving);
+    (problem.ConstrainPositions ? std::includes(old.Moving.begin(), old.Moving.end(),
+                                    problem.Moving.begin(), problem.Moving.end())
+                                : old.Moving == problem.Moving);
 }
 
 /// The box around the points of handle `id`; invalid if there are none.
@@ -290,8 +288,8 @@ void Widen(vtkBoundingBox& bounds, double length)
   bounds.Inflate(margins[0], margins[1], margins[2]);
 }
 
-void AddTransformArrays(const cartan::DeformedSurface& result, bool frameChange,
-  bool rotationVector, vtkPolyData* output)
+void AddTransformArrays(
+  const cartan::DeformedSurface& result, bool frameChange, bool rotationVector, vtkPolyData* output)
 {
   const Eigen::Index size = result.Transforms.rows();
   if (frameChange)
@@ -299,8 +297,7 @@ void AddTransformArrays(const cartan::DeformedSurface& result, bool frameChange,
     Eigen::VectorXd change(size);
     for (Eigen::Index v = 0; v < size; ++v)
     {
-      change[v] =
-        (cartan::MatrixAt(result.Transforms, v) - Eigen::Matrix3d::Identity()).norm();
+      change[v] = (cartan::MatrixAt(result.Transforms, v) - Eigen::Matrix3d::Identity()).norm();
     }
     cartan::AddPointArray(output, "FrameChange", change.data(), size, 1);
   }
@@ -762,8 +759,7 @@ int vtkSurfaceDeformation::RequestData(
       session.Deformer->Deform(targets,
         this->GenerateFrameChange || this->GenerateRotationVector || this->NeedsTransforms(),
         session.Result, context.Part(0.8, 0.95));
-      this->State->Factorizations +=
-        session.Deformer->GetNumberOfFactorizations() - factorizations;
+      this->State->Factorizations += session.Deformer->GetNumberOfFactorizations() - factorizations;
       cartan::Warn(this, session.Deformer->GetWarning());
 
       cartan::WriteSurface(*surface, session.Result.Positions, input, output, context);

@@ -279,9 +279,8 @@ protected:
    * A deformer for the problem: what survives from one motion to the next.
    * Throws cartan::Error.
    */
-  virtual std::unique_ptr<cartan::SurfaceDeformer> NewDeformer(
-    const cartan::HandleProblem& problem, cartan::SolverBackend backend,
-    const cartan::ExecutionContext& context) = 0;
+  virtual std::unique_ptr<cartan::SurfaceDeformer> NewDeformer(const cartan::HandleProblem& problem,
+    cartan::SolverBackend backend, const cartan::ExecutionContext& context) = 0;
 
   /**
    * Hands over the parameters that may change from one motion to the next.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceMorph.h"
 
-#include "Kernel/Morph/TriangleGradientMorph.h"
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/LinearMorph.h"
 #include "Kernel/Morph/MorphVolume.h"
 #include "Kernel/Morph/RigidPlacement.h"
+#include "Kernel/Morph/TriangleGradientMorph.h"
 #include "SurfacePair.h"
 
 #include "vtkCompositeDataIterator.h"
@@ -148,7 +148,7 @@ public:
   {
     std::vector<cartan::Surface::Source> ReadFrom;
     std::tuple<int, int, int, int, int> Settings;
-    cartan::Surface First; ///< with the triangles that all key frames use
+    cartan::Surface First;  ///< with the triangles that all key frames use
     cartan::KeyFrames Keys; ///< about the origin of First
     std::unique_ptr<cartan::SurfaceMorph> Morph;
     std::unique_ptr<cartan::MorphVolume> Volume; ///< once it is needed
@@ -254,8 +254,7 @@ int vtkSurfaceMorph::RequestInformation(
       state.Times.assign(times, times + steps);
       for (const double time : state.Times)
       {
-        state.Parameters.push_back(
-          (time - times[0]) / (state.Times.back() - state.Times.front()));
+        state.Parameters.push_back((time - times[0]) / (state.Times.back() - state.Times.front()));
       }
     }
     auto* upstream = vtkDemandDrivenPipeline::SafeDownCast(this->GetInputExecutive(0, 0));
@@ -278,8 +277,8 @@ int vtkSurfaceMorph::RequestInformation(
       for (int step = 0; step < this->StepsBetweenKeyFrames; ++step)
       {
         const double part = static_cast<double>(step) / this->StepsBetweenKeyFrames;
-        steps.push_back(state.ToTime(
-          (1.0 - part) * state.Parameters[k] + part * state.Parameters[k + 1]));
+        steps.push_back(
+          state.ToTime((1.0 - part) * state.Parameters[k] + part * state.Parameters[k + 1]));
       }
     }
     steps.push_back(state.ToTime(1.0));
@@ -370,8 +369,8 @@ int vtkSurfaceMorph::RequestData(
       }
       for (int k = window.first; k < window.second; ++k)
       {
-        keys.push_back(state.Times.empty() ? vtkPolyData::GetData(inputVector[0], k)
-                                           : state.Steps.at(k).Get());
+        keys.push_back(
+          state.Times.empty() ? vtkPolyData::GetData(inputVector[0], k) : state.Steps.at(k).Get());
         roles.push_back("key frame " + std::to_string(k) +
           (state.Times.empty() ? "" : " (time " + std::to_string(state.Times[k]) + ")"));
       }
@@ -386,7 +385,7 @@ int vtkSurfaceMorph::RequestData(
   {
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(),
       outputInfo->Has(Pipeline::UPDATE_TIME_STEP()) ? outputInfo->Get(Pipeline::UPDATE_TIME_STEP())
-                                                     : state.ToTime(t));
+                                                    : state.ToTime(t));
   }
   return 1;
 }
@@ -424,8 +423,7 @@ void vtkSurfaceMorph::Prepare(const std::vector<vtkPolyData*>& keys,
   session.Keys.Parameters = parameters;
   for (std::size_t k = 0; k < keys.size(); ++k)
   {
-    matched.Positions[k].rowwise() +=
-      (matched.Origins[k] - matched.Origins[0]).transpose().eval();
+    matched.Positions[k].rowwise() += (matched.Origins[k] - matched.Origins[0]).transpose().eval();
   }
   session.Keys.Positions = std::move(matched.Positions);
   session.First.Mesh = std::move(matched.Mesh);

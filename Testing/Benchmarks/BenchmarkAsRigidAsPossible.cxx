@@ -9,8 +9,8 @@
 #include "BenchmarkTools.h"
 #include "PeerDeformation.h"
 
-#include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
 #include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
 
 #include <cmath>
 #include <cstdio>

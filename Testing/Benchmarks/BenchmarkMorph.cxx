@@ -7,10 +7,10 @@
 #include "BenchmarkTools.h"
 #include "PeerDeformation.h"
 
-#include "Kernel/Morph/TriangleGradientMorph.h"
+#include "Kernel/Deformation/ShapePreservingDeformer.h"
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
-#include "Kernel/Deformation/ShapePreservingDeformer.h"
+#include "Kernel/Morph/TriangleGradientMorph.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -34,8 +34,8 @@ struct Times
   std::vector<double> Iterations;
 };
 
-Times Play(const KeyFrames& keys,
-  const std::function<std::unique_ptr<SurfaceMorph>(const KeyFrames&)>& make)
+Times Play(
+  const KeyFrames& keys, const std::function<std::unique_ptr<SurfaceMorph>(const KeyFrames&)>& make)
 {
   Times times;
   double start = WallTime();
@@ -65,8 +65,8 @@ KeyFrames Poses(const Mesh& mesh, double degrees)
 void Measure(const Mesh& mesh, double degrees)
 {
   const KeyFrames keys = Poses(mesh, degrees);
-  std::printf("Camel, %d points, turned by %.0f degrees\n",
-    static_cast<int>(mesh.Points.rows()), degrees);
+  std::printf(
+    "Camel, %d points, turned by %.0f degrees\n", static_cast<int>(mesh.Points.rows()), degrees);
   const cartan::HandleProblem problem = MakeProblem(mesh, 0.3, 0.8);
   PeerDeformation peer(mesh.Points, mesh.Triangles, problem.Handle);
   const cartan::HandleTargets targets = Turn(20.0);
@@ -95,18 +95,18 @@ void Measure(const Mesh& mesh, double degrees)
     std::function<std::unique_ptr<SurfaceMorph>(const KeyFrames&)> Make;
     double Limit; // seconds for an in-between; 0 where nothing is asked
   };
-  for (const Method& method : {
-         Method{ "DiscreteForms, rotation averaging", forms(Solver::RotationAveraging), 0.5 },
-         Method{ "DiscreteForms, conjugate gradients", forms(Solver::ConjugateGradients), 0.0 },
-         Method{ "DiscreteForms, direct", forms(Solver::Direct), 0.0 },
-         Method{ "Isometric",
-           [](const KeyFrames& of) -> std::unique_ptr<SurfaceMorph>
-           { return std::make_unique<cartan::IsometricMorph>(of); },
-           0.0 },
-         Method{ "DeformationGradient",
-           [](const KeyFrames& of) -> std::unique_ptr<SurfaceMorph>
-           { return std::make_unique<cartan::TriangleGradientMorph>(of); },
-           0.0 } })
+  for (const Method& method :
+    { Method{ "DiscreteForms, rotation averaging", forms(Solver::RotationAveraging), 0.5 },
+      Method{ "DiscreteForms, conjugate gradients", forms(Solver::ConjugateGradients), 0.0 },
+      Method{ "DiscreteForms, direct", forms(Solver::Direct), 0.0 },
+      Method{ "Isometric",
+        [](const KeyFrames& of) -> std::unique_ptr<SurfaceMorph>
+        { return std::make_unique<cartan::IsometricMorph>(of); },
+        0.0 },
+      Method{ "DeformationGradient",
+        [](const KeyFrames& of) -> std::unique_ptr<SurfaceMorph>
+        { return std::make_unique<cartan::TriangleGradientMorph>(of); },
+        0.0 } })
   {
     const Times times = Play(keys, method.Make);
     const double worst = *std::max_element(times.Evaluations.begin(), times.Evaluations.end());
@@ -118,8 +118,8 @@ void Measure(const Mesh& mesh, double degrees)
     PrintRow("  iterations, median", "", Median(times.Iterations), "");
     PrintRow("  iterations, most", "",
       *std::max_element(times.Iterations.begin(), times.Iterations.end()), "");
-    PrintRow("  ratio of the median to CGAL's iteration", "",
-      Median(times.Evaluations) / iteration, "");
+    PrintRow(
+      "  ratio of the median to CGAL's iteration", "", Median(times.Evaluations) / iteration, "");
   }
 }
 }

@@ -50,8 +50,7 @@ inline cartan::Points Twist(const shapes::Shape& shape, double degrees, double f
   {
     const Eigen::Vector3d x = shape.Positions.row(v);
     const double part = (std::clamp(x[2], from, to) - from) / (to - from);
-    const Eigen::AngleAxisd turn(
-      degrees * shapes::Pi / 180.0 * part, Eigen::Vector3d::UnitZ());
+    const Eigen::AngleAxisd turn(degrees * shapes::Pi / 180.0 * part, Eigen::Vector3d::UnitZ());
     twisted.row(v) = (turn * x).transpose();
   }
   return twisted;

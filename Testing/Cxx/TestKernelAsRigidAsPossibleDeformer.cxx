@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
 
-#include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/ShapePreservingDeformer.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ using cartan::HandleProblem;
 using cartan::HandleTargets;
 using cartan::InitialGuess;
 using cartan::LaplacianWeights;
-using cartan::MatrixAt;
 using cartan::Matrices;
+using cartan::MatrixAt;
 using cartan::Points;
 using cartan::RigidityEnergy;
 using cartan::RotationFromVector;
@@ -180,9 +180,8 @@ HandleTargets BendBar(double degrees, double length)
   const double angle = degrees * shapes::Pi / 180.0;
   const double radius = length / angle;
   // The arc's center is at y = radius; a turn about -x tilts +z towards +y.
-  return Targets(
-    Turn({ -angle, 0.0, 0.0 }, { 0.0, radius, 0.0 }, RotationFromVector({ -angle, 0.0, 0.0 }) *
-        Vector3d(0.0, 0.0, -length)));
+  return Targets(Turn({ -angle, 0.0, 0.0 }, { 0.0, radius, 0.0 },
+    RotationFromVector({ -angle, 0.0, 0.0 }) * Vector3d(0.0, 0.0, -length)));
 }
 }
 
@@ -234,8 +233,8 @@ TEST(AsRigidAsPossibleDeformer, ReportsTheEnergyOfItsDefinition)
       {
         deformer.SetIteration(iterations, 0.0);
         const DeformedSurface result = Deform(deformer, targets);
-        const double expected = BruteForceEnergy(problem, energy, result.Positions,
-          result.Transforms, Coupling(problem, energy, 0.003));
+        const double expected = BruteForceEnergy(
+          problem, energy, result.Positions, result.Transforms, Coupling(problem, energy, 0.003));
         EXPECT_NEAR(deformer.GetEnergies().back(), expected, 1e-11 * expected);
       }
     }
@@ -399,8 +398,8 @@ TEST(AsRigidAsPossibleDeformer, CommutesWithRigidMotionsOfEverything)
     AsRigidAsPossibleDeformer original(problem, energy);
     problem.Rest = std::make_shared<const Points>(rigid(shape.Positions));
     AsRigidAsPossibleDeformer moved(problem, energy);
-    EXPECT_LT(Distance(Deform(moved, conjugated).Positions,
-                rigid(Deform(original, targets).Positions)),
+    EXPECT_LT(
+      Distance(Deform(moved, conjugated).Positions, rigid(Deform(original, targets).Positions)),
       1e-9);
   }
 }
@@ -413,8 +412,8 @@ TEST(AsRigidAsPossibleDeformer, DoesNotDependOnThreads)
   {
     const HandleProblem problem = MakeProblem(shape, 1);
     AsRigidAsPossibleDeformer alone(problem, energy);
-    AsRigidAsPossibleDeformer together(problem, energy, InitialGuess::ShapePreserving,
-      SolverBackend::Automatic, ManyThreads(7));
+    AsRigidAsPossibleDeformer together(
+      problem, energy, InitialGuess::ShapePreserving, SolverBackend::Automatic, ManyThreads(7));
     const DeformedSurface expected = Deform(alone, targets);
     const DeformedSurface result = Deform(together, targets, ManyThreads(5));
     // To the bit: each number is computed by one thread from the same numbers.
@@ -538,7 +537,7 @@ TEST(AsRigidAsPossibleDeformer, BendingMakesRotationsSmooth)
   {
     const double x = shape.Positions(v, 0);
     const double y = shape.Positions(v, 1);
-    problem.Handle[v] = std::hypot(x, y) < 0.06 ? 2
+    problem.Handle[v] = std::hypot(x, y) < 0.06   ? 2
       : std::max(std::abs(x), std::abs(y)) > 0.49 ? 1
                                                   : 0;
   }
@@ -552,8 +551,7 @@ TEST(AsRigidAsPossibleDeformer, BendingMakesRotationsSmooth)
     const DeformedSurface result = Deform(deformer, targets);
     const double rough = BruteForceEnergy(problem, RigidityEnergy::SmoothedRotations,
                            result.Positions, result.Transforms, 1.0) -
-      BruteForceEnergy(
-        problem, RigidityEnergy::Spokes, result.Positions, result.Transforms, 0.0);
+      BruteForceEnergy(problem, RigidityEnergy::Spokes, result.Positions, result.Transforms, 0.0);
     shapes::ShowFigure("alpha", alpha);
     shapes::ShowFigure("  sum of w |R_i - R_j|^2", rough);
     shapes::ShowFigure("  steps", deformer.GetNumberOfIterations());
@@ -633,9 +631,10 @@ TEST(AsRigidAsPossibleDeformer, LeavesWhatNoMovingHandleReachesAsItIs)
   for (int v = 0; v < shape.NumberOfVertices(); ++v)
   {
     const int column = v % 40;
-    problem.Handle.push_back(v < torus.NumberOfVertices()
-        ? (column < 3 ? 2 : column == 10 || column == 32 ? 1 : 0)
-        : (column == 0 ? 3 : 0));
+    problem.Handle.push_back(v < torus.NumberOfVertices() ? (column < 3                        ? 2
+                                                                : column == 10 || column == 32 ? 1
+                                                                                               : 0)
+                                                          : (column == 0 ? 3 : 0));
   }
   problem.Moving = { 2 };
   for (const RigidityEnergy energy : AllEnergies)
@@ -654,12 +653,12 @@ TEST(AsRigidAsPossibleDeformer, LeavesWhatNoMovingHandleReachesAsItIs)
     for (int v = 0; v < shape.NumberOfVertices(); ++v)
     {
       const int column = v % 40;
-      const bool isFree = v < torus.NumberOfVertices() &&
-        ((column > 2 && column < 10) || column > 32);
+      const bool isFree =
+        v < torus.NumberOfVertices() && ((column > 2 && column < 10) || column > 32);
       free.Handle[v] = isFree ? 0 : 1;
     }
-    const double expected = BruteForceEnergy(problem, energy, result.Positions,
-      result.Transforms, Coupling(free, energy, 0.02));
+    const double expected = BruteForceEnergy(
+      problem, energy, result.Positions, result.Transforms, Coupling(free, energy, 0.02));
     EXPECT_NEAR(deformer.GetEnergies().back(), expected, 1e-11 * expected);
   }
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/LaplacianDeformer.h"
-#include "Kernel/Measure/Measures.h"
 #include "Kernel/Deformation/MotionBlend.h"
 #include "Kernel/Deformation/MultiresolutionDeformer.h"
 #include "Kernel/Deformation/PoissonDeformer.h"
-#include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Measure/Measures.h"
 #include "TestShapes.h"
 
 #include <gtest/gtest.h>
@@ -48,8 +48,8 @@ struct BentBar
     motion.RotationVector = { -this->Angle, 0.0, 0.0 };
     motion.Linear = cartan::RotationFromVector(motion.RotationVector);
     const Eigen::Vector3d from(0.5, 0.5, 5.0);
-    const Eigen::Vector3d to(0.5, 0.5 + radius * (1.0 - std::cos(this->Angle)),
-      1.0 + radius * std::sin(this->Angle));
+    const Eigen::Vector3d to(
+      0.5, 0.5 + radius * (1.0 - std::cos(this->Angle)), 1.0 + radius * std::sin(this->Angle));
     motion.Translation = to - motion.Linear * from;
     this->Targets.Motions = { motion };
   }
@@ -100,8 +100,8 @@ Quality Measure(const BentBar& bar, const Points& current)
   for (int d = 0; d < mesh.NumberOfDirectedEdges(); ++d)
   {
     const double angle = 180.0 / shapes::Pi *
-      cartan::VectorFromRotation(rotations[mesh.LeftTriangle(d)].transpose() *
-        rotations[mesh.LeftTriangle(mesh.Twin(d))])
+      cartan::VectorFromRotation(
+        rotations[mesh.LeftTriangle(d)].transpose() * rotations[mesh.LeftTriangle(mesh.Twin(d))])
         .norm();
     sum += angle * angle;
     ++count;
@@ -199,8 +199,7 @@ std::map<std::string, std::unique_ptr<cartan::SurfaceDeformer>> AllMethods(
   const HandleProblem& problem)
 {
   std::map<std::string, std::unique_ptr<cartan::SurfaceDeformer>> methods;
-  methods["naive"] =
-    std::make_unique<cartan::LaplacianDeformer>(problem, LaplacianRotations::None);
+  methods["naive"] = std::make_unique<cartan::LaplacianDeformer>(problem, LaplacianRotations::None);
   methods["estimated"] =
     std::make_unique<cartan::LaplacianDeformer>(problem, LaplacianRotations::Estimated);
   methods["implicit"] =
@@ -305,8 +304,8 @@ TEST(DifferentialDeformers, RefuseHandlesWithoutPositions)
     }
     return false;
   };
-  EXPECT_TRUE(refuses(
-    [&]() { cartan::LaplacianDeformer deformer(bar.Problem, LaplacianRotations::None); }));
+  EXPECT_TRUE(
+    refuses([&]() { cartan::LaplacianDeformer deformer(bar.Problem, LaplacianRotations::None); }));
   EXPECT_TRUE(refuses([&]() { cartan::MultiresolutionDeformer deformer(bar.Problem, 2); }));
 }
 
@@ -322,8 +321,7 @@ TEST(PoissonDeformer, GeodesicWeightsAreLinearAlongACylinder)
   {
     const double z = bar.Shape.Positions(v, 2);
     const double expected = bar.Angle * std::min(std::max((z - 1.0) / 4.0, 0.0), 1.0);
-    const double angle =
-      cartan::VectorFromRotation(cartan::MatrixAt(result.Transforms, v)).norm();
+    const double angle = cartan::VectorFromRotation(cartan::MatrixAt(result.Transforms, v)).norm();
     EXPECT_NEAR(angle, expected, 1e-6);
   }
 }
@@ -346,8 +344,7 @@ TEST(PoissonDeformer, KeepsLapsAndSpreadsScale)
     {
       const Eigen::Matrix3d transform = cartan::MatrixAt(result.Transforms, v);
       EXPECT_NEAR(std::cbrt(transform.determinant()), 1.5, 1e-6);
-      const Eigen::Matrix3d quarter =
-        cartan::RotationFromVector({ 0.0, 0.0, 1.5 * shapes::Pi });
+      const Eigen::Matrix3d quarter = cartan::RotationFromVector({ 0.0, 0.0, 1.5 * shapes::Pi });
       EXPECT_LT((transform / 1.5 - quarter).norm(), 1e-6);
       ++found;
     }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Differential/FrameReconstruction.h"
 
-#include "Kernel/Mesh/Geometry.h"
-#include "Kernel/Differential/Laplacian.h"
 #include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Differential/Laplacian.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 
 #include <Eigen/QR>

@@ -220,9 +220,8 @@ TEST(GeodesicDistance, GoesAroundABoundary)
   for (Eigen::Index t = 0; t < plane.Faces.rows(); ++t)
   {
     const Eigen::Vector3i face = plane.Faces.row(t).transpose();
-    const Eigen::RowVector3d center = (plane.Positions.row(face[0]) +
-                                        plane.Positions.row(face[1]) +
-                                        plane.Positions.row(face[2])) /
+    const Eigen::RowVector3d center =
+      (plane.Positions.row(face[0]) + plane.Positions.row(face[1]) + plane.Positions.row(face[2])) /
       3.0;
     if (!(std::abs(center[0]) < h && center[1] < 0.0))
     {
@@ -233,8 +232,7 @@ TEST(GeodesicDistance, GoesAroundABoundary)
   const auto at = [count](int i, int j) { return j * (count + 1) + i; };
   const int source = at(10, 10); // (-0.5, -0.5)
   const int target = at(30, 10); // (0.5, -0.5)
-  const Eigen::VectorXd distance =
-    GeodesicDistance(MakeMesh(plane), plane.Positions, { source });
+  const Eigen::VectorXd distance = GeodesicDistance(MakeMesh(plane), plane.Positions, { source });
   const double exact = 2.0 * std::hypot(0.5 - h, 0.5) + 2.0 * h;
   EXPECT_GE(distance[target], exact - 1e-9);
   EXPECT_LT(distance[target], exact + h);
@@ -245,15 +243,13 @@ TEST(GeodesicDistance, DoesNotChangeUnderRigidMotionsAndScalesWithTheSurface)
   const shapes::Shape torus = shapes::Torus(24, 14, 2.0, 0.7, 0.2);
   const Eigen::VectorXd distance = GeodesicDistance(MakeMesh(torus), torus.Positions, { 17 });
   const shapes::Shape moved = shapes::RandomRigidMotion(9, 5.0)(torus);
-  EXPECT_LT((GeodesicDistance(MakeMesh(moved), moved.Positions, { 17 }) - distance)
-              .cwiseAbs()
-              .maxCoeff(),
+  EXPECT_LT(
+    (GeodesicDistance(MakeMesh(moved), moved.Positions, { 17 }) - distance).cwiseAbs().maxCoeff(),
     1e-8);
   const double tiny = 1e-9;
   const Points scaled = tiny * torus.Positions;
-  EXPECT_LT((GeodesicDistance(MakeMesh(torus), scaled, { 17 }) / tiny - distance)
-              .cwiseAbs()
-              .maxCoeff(),
+  EXPECT_LT(
+    (GeodesicDistance(MakeMesh(torus), scaled, { 17 }) / tiny - distance).cwiseAbs().maxCoeff(),
     1e-8);
 }
 

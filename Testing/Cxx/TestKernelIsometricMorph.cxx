@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Morph/IsometricMorph.h"
 
-#include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 
 #include <Eigen/Eigenvalues>
@@ -45,8 +45,7 @@ KeyFrames Frames(
 IsometricMorph Morph(
   const Shape& first, const Points& last, const IsometricMorphOptions& options = {})
 {
-  return IsometricMorph(
-    Frames(MakeMesh(first), { first.Positions, last }, { 0.0, 1.0 }), options);
+  return IsometricMorph(Frames(MakeMesh(first), { first.Positions, last }, { 0.0, 1.0 }), options);
 }
 
 Points Map(const Points& points, const std::function<Vector3d(const Vector3d&)>& map)
@@ -266,8 +265,7 @@ TEST(IsometricMorph, PolishBringsLengthsCloser)
     double last = std::numeric_limits<double>::infinity();
     for (const int rounds : { 0, 1, 3, 10 })
     {
-      IsometricMorph morph =
-        Morph(example.First, example.Last, Options(Method::Automatic, rounds));
+      IsometricMorph morph = Morph(example.First, example.Last, Options(Method::Automatic, rounds));
       const EdgeError error = EdgeErrors(morph, 0.5, morph.Evaluate(0.5));
       shapes::ShowFigure(
         example.Name + ", polished " + std::to_string(rounds) + ", edge rms", error.Rms);
@@ -342,11 +340,10 @@ TEST(IsometricMorph, DoesNotDependOnWhereTheKeyFramesAreNorOnTheUnit)
     for (const Method method : AllMethods)
     {
       const Points expected = Morph(example.First, example.Last, Options(method)).Evaluate(0.4);
-      IsometricMorph moved(
-        Frames(mesh,
-          { shapes::RandomRigidMotion(1, 10.0)(example.First.Positions),
-            shapes::RandomRigidMotion(2, 10.0)(example.Last) },
-          { 0.0, 1.0 }),
+      IsometricMorph moved(Frames(mesh,
+                             { shapes::RandomRigidMotion(1, 10.0)(example.First.Positions),
+                               shapes::RandomRigidMotion(2, 10.0)(example.Last) },
+                             { 0.0, 1.0 }),
         Options(method));
       EXPECT_LT(ShapeDistance(mesh, moved.Evaluate(0.4), expected), 1e-8);
       IsometricMorph scaled(
@@ -743,8 +740,7 @@ TEST(IsometricMorph, WorksOnClosedSurfacesAndBoundaries)
       IsometricMorph doubled = Morph(shape, 2.0 * shape.Positions, Options(method));
       EXPECT_LT(ShapeDistance(mesh, doubled.Evaluate(0.5), 1.5 * shape.Positions), 1e-12);
     }
-    IsometricMorph morph =
-      Morph(shape, shape.Positions * Vector3d(1.0, 1.1, 1.2).asDiagonal());
+    IsometricMorph morph = Morph(shape, shape.Positions * Vector3d(1.0, 1.1, 1.2).asDiagonal());
     EXPECT_LT(EdgeErrors(morph, 0.5, morph.Evaluate(0.5)).Rms, bound);
   }
 }
@@ -822,7 +818,7 @@ TEST(IsometricMorph, StopsOnRequest)
   const Example example = Examples()[1];
   const cartan::ExecutionContext stop({}, [](double) { return false; });
   EXPECT_THROW(IsometricMorph(Frames(MakeMesh(example.First),
-                              { example.First.Positions, example.Last }, { 0.0, 1.0 }),
+                                { example.First.Positions, example.Last }, { 0.0, 1.0 }),
                  {}, stop),
     cartan::Error);
   IsometricMorph morph = Morph(example.First, example.Last);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Deformation/RotationInvariantDeformer.h"
 
+#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Differential/DiscreteForms.h"
 #include "Kernel/Mesh/Geometry.h"
-#include "Kernel/Algebra/Rotation.h"
 #include "RealMeshes.h"
 
 #include <Eigen/SVD>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Deformation/ShapePreservingDeformer.h"
 
-#include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/HandleLaplacian.h"
 #include "Kernel/Measure/Measures.h"
-#include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 #include "TestShapes.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Deformation/SimilarityDeformer.h"
 
+#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
-#include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Deformation/LaplacianDeformer.h"
 #include "Kernel/Measure/Measures.h"
-#include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 
 #include <Eigen/LU>
@@ -46,8 +46,8 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr SimilarityReconstruction AllReconstructions[] = { SimilarityReconstruction::Affine,
   SimilarityReconstruction::LeastSquares, SimilarityReconstruction::EdgeForm };
 
-constexpr LaplacianWeights AllWeights[] = { LaplacianWeights::Uniform,
-  LaplacianWeights::Cotangent, LaplacianWeights::MeanValue };
+constexpr LaplacianWeights AllWeights[] = { LaplacianWeights::Uniform, LaplacianWeights::Cotangent,
+  LaplacianWeights::MeanValue };
 
 /// Handles 1 and 2 where z is in the lowest and highest `share`; 2 moves.
 HandleProblem MakeProblem(
@@ -231,8 +231,9 @@ void PrintTo(const TranslationCase& which, std::ostream* stream)
 
 std::vector<TranslationCase> TranslationCases()
 {
-  const auto ends = [](double high)
-  { return [high](const Vector3d& p) { return p[2] < 0.8 ? 1 : p[2] > high ? 2 : 0; }; };
+  const auto ends = [](double high) {
+    return [high](const Vector3d& p) { return p[2] < 0.8 ? 1 : p[2] > high ? 2 : 0; };
+  };
   const Shape tail = BumpyTail();
   const Shape dinosaur = shapes::RealMesh("dino");
   const auto tip = [](const Vector3d& p) { return p[1] < 1.2 ? 1 : p[1] > 2.35 ? 2 : 0; };
@@ -366,8 +367,7 @@ Points LiteralFirstSolve(const HandleProblem& problem, const HandleMotion& motio
     }
     else if (problem.Handle[v] == 2)
     {
-      result.row(v) =
-        (motion.Linear * rest.row(v).transpose() + motion.Translation).transpose();
+      result.row(v) = (motion.Linear * rest.row(v).transpose() + motion.Translation).transpose();
     }
   }
   Eigen::MatrixXd a(rows.size(), free.size());
@@ -415,8 +415,8 @@ TEST_P(SimilarityOracle, IsReached)
 
   const TriangleMesh& mesh = *ideal.Problem.Mesh;
   const Points& rest = *ideal.Problem.Rest;
-  const double rotation = MeanAngle(
-    ideal.Problem, cartan::FitRotations(mesh, rest, result.Positions), ideal.Rotations);
+  const double rotation =
+    MeanAngle(ideal.Problem, cartan::FitRotations(mesh, rest, result.Positions), ideal.Rotations);
   const double volume = Volume(mesh, result.Positions) / Volume(mesh, rest);
   const double edges = cartan::CompareEdgeLengths(mesh, rest, result.Positions).RootMeanSquare;
   shapes::ShowFigure(figure.Name() + " rotation error", rotation);
@@ -431,31 +431,30 @@ TEST_P(SimilarityOracle, IsReached)
 }
 
 INSTANTIATE_TEST_SUITE_P(Bar, SimilarityOracle,
-  testing::Values(
-    OracleFigure{ false, 90.0, LaplacianWeights::Uniform, SimilarityReconstruction::LeastSquares,
-      1.41, 0.982, 0.053 },
-    OracleFigure{ false, 90.0, LaplacianWeights::Cotangent,
-      SimilarityReconstruction::LeastSquares, 1.74, 0.971, 0.056 },
+  testing::Values(OracleFigure{ false, 90.0, LaplacianWeights::Uniform,
+                    SimilarityReconstruction::LeastSquares, 1.41, 0.982, 0.053 },
+    OracleFigure{ false, 90.0, LaplacianWeights::Cotangent, SimilarityReconstruction::LeastSquares,
+      1.74, 0.971, 0.056 },
     OracleFigure{ false, 90.0, LaplacianWeights::Cotangent, SimilarityReconstruction::EdgeForm,
       1.47, 0.984, 0.052 },
-    OracleFigure{ false, 150.0, LaplacianWeights::Uniform,
-      SimilarityReconstruction::LeastSquares, 3.82, 0.912, 0.098 },
-    OracleFigure{ false, 150.0, LaplacianWeights::Cotangent,
-      SimilarityReconstruction::LeastSquares, 4.18, 0.889, 0.102 },
+    OracleFigure{ false, 150.0, LaplacianWeights::Uniform, SimilarityReconstruction::LeastSquares,
+      3.82, 0.912, 0.098 },
+    OracleFigure{ false, 150.0, LaplacianWeights::Cotangent, SimilarityReconstruction::LeastSquares,
+      4.18, 0.889, 0.102 },
     OracleFigure{ false, 150.0, LaplacianWeights::Cotangent, SimilarityReconstruction::EdgeForm,
       3.71, 0.967, 0.087 },
-    OracleFigure{ false, 170.0, LaplacianWeights::Uniform,
-      SimilarityReconstruction::LeastSquares, 4.98, 0.872, 0.118 },
-    OracleFigure{ false, 170.0, LaplacianWeights::Cotangent,
-      SimilarityReconstruction::LeastSquares, 5.32, 0.845, 0.122 },
+    OracleFigure{ false, 170.0, LaplacianWeights::Uniform, SimilarityReconstruction::LeastSquares,
+      4.98, 0.872, 0.118 },
+    OracleFigure{ false, 170.0, LaplacianWeights::Cotangent, SimilarityReconstruction::LeastSquares,
+      5.32, 0.845, 0.122 },
     OracleFigure{ false, 170.0, LaplacianWeights::Cotangent, SimilarityReconstruction::EdgeForm,
       4.91, 0.961, 0.099 },
     OracleFigure{ true, 90.0, LaplacianWeights::Uniform, SimilarityReconstruction::LeastSquares,
       7.65, 0.798, 0.057 },
-    OracleFigure{ true, 90.0, LaplacianWeights::Cotangent,
-      SimilarityReconstruction::LeastSquares, 6.38, 0.963, 0.028 },
-    OracleFigure{ true, 90.0, LaplacianWeights::Cotangent, SimilarityReconstruction::EdgeForm,
-      6.10, 0.965, 0.028 }),
+    OracleFigure{ true, 90.0, LaplacianWeights::Cotangent, SimilarityReconstruction::LeastSquares,
+      6.38, 0.963, 0.028 },
+    OracleFigure{ true, 90.0, LaplacianWeights::Cotangent, SimilarityReconstruction::EdgeForm, 6.10,
+      0.965, 0.028 }),
   [](const testing::TestParamInfo<OracleFigure>& figure) { return figure.param.Name(); });
 
 TEST(SimilarityDeformer, FirstSolveMinimizesTheFunctional)
@@ -548,10 +547,11 @@ TEST(SimilarityDeformer, DoesNotDependOnTheUnitOfLength)
         SimilarityDeformer deformer(problem, {});
         deformer.SetReconstruction(reconstruction);
         deformer.SetRefits(1);
-        const Points result = Deform(deformer,
-          Targets(
-            { Motion(RotationFromVector({ 1.0, 0.0, 0.5 }), Vector3d(0.5, 2.0, 0.0) * unit) }))
-                                .Positions /
+        const Points result =
+          Deform(deformer,
+            Targets(
+              { Motion(RotationFromVector({ 1.0, 0.0, 0.5 }), Vector3d(0.5, 2.0, 0.0) * unit) }))
+            .Positions /
           unit;
         if (unit == 1.0)
         {
@@ -696,12 +696,11 @@ TEST(SimilarityDeformer, TurnsAtHandlesOfPositionsAlone)
   SimilarityDeformer held(problem, options);
   options.ConstrainTransforms = false;
   SimilarityDeformer loose(problem, options);
-  const HandleTargets targets =
-    Targets({ Motion(Matrix3d::Identity(), Vector3d(0.0, 2.0, -0.5)) });
-  const Matrices free = cartan::FitRotations(
-    *problem.Mesh, bar.Positions, Deform(loose, targets).Positions);
-  const Matrices fixed = cartan::FitRotations(
-    *problem.Mesh, bar.Positions, Deform(held, targets).Positions);
+  const HandleTargets targets = Targets({ Motion(Matrix3d::Identity(), Vector3d(0.0, 2.0, -0.5)) });
+  const Matrices free =
+    cartan::FitRotations(*problem.Mesh, bar.Positions, Deform(loose, targets).Positions);
+  const Matrices fixed =
+    cartan::FitRotations(*problem.Mesh, bar.Positions, Deform(held, targets).Positions);
   double freeSum = 0.0;
   double fixedSum = 0.0;
   for (int v = 0; v < bar.NumberOfVertices(); ++v)
@@ -756,8 +755,7 @@ TEST(SimilarityDeformer, MotionsAndTargetsByVertexAgree)
     {
       deformer.SetReconstruction(reconstruction);
       EXPECT_LT(
-        Distance(Deform(deformer, motions).Positions, Deform(deformer, byVertex).Positions),
-        1e-11);
+        Distance(Deform(deformer, motions).Positions, Deform(deformer, byVertex).Positions), 1e-11);
     }
   }
 }
@@ -802,8 +800,8 @@ TEST(SimilarityDeformer, FactorizesOncePerSystemAndBackendsAgree)
     SimilarityDeformer deformer(problem, {}, backend);
     for (const double angle : { 0.3, 0.9 })
     {
-      results.push_back(Deform(deformer,
-        Targets({ Motion(RotationFromVector({ angle, 0.0, 0.0 }), Vector3d::Zero()) }))
+      results.push_back(Deform(
+        deformer, Targets({ Motion(RotationFromVector({ angle, 0.0, 0.0 }), Vector3d::Zero()) }))
                           .Positions);
     }
     EXPECT_EQ(deformer.GetNumberOfFactorizations(), 2);
@@ -830,11 +828,11 @@ TEST(SimilarityDeformer, RefusesHandlesThatDoNotDetermineTheSurface)
   {
     handle = handle == 2 ? 2 : 0;
   }
-  ExpectError(ErrorCode::SingularSystem, "no position is held",
-    [&] { SimilarityDeformer(problem, {}); });
+  ExpectError(
+    ErrorCode::SingularSystem, "no position is held", [&] { SimilarityDeformer(problem, {}); });
   problem.ConstrainPositions = true;
-  ExpectError(ErrorCode::SingularSystem, "in one plane",
-    [&] { SimilarityDeformer(problem, options); });
+  ExpectError(
+    ErrorCode::SingularSystem, "in one plane", [&] { SimilarityDeformer(problem, options); });
   SimilarityDeformer alsoFine(problem, {});
 }
 
@@ -845,8 +843,7 @@ TEST(SimilarityDeformer, WarnsOfMirroringAndFlattening)
   SimilarityDeformer deformer(problem, {});
   const auto warning = [&](const Matrix3d& linear)
   {
-    const DeformedSurface result =
-      Deform(deformer, Targets({ Motion(linear, Vector3d::Zero()) }));
+    const DeformedSurface result = Deform(deformer, Targets({ Motion(linear, Vector3d::Zero()) }));
     EXPECT_TRUE(result.Positions.allFinite());
     EXPECT_TRUE(result.Transforms.allFinite());
     return deformer.GetWarning();
@@ -878,6 +875,6 @@ TEST(SimilarityDeformer, BendsAnOpenPlane)
   EXPECT_LT(
     cartan::CompareEdgeLengths(*problem.Mesh, plane.Positions, result.Positions).RootMeanSquare,
     0.25);
-  EXPECT_LT(Distance(Deform(deformer, Targets({ HandleMotion() })).Positions, plane.Positions),
-    1e-12);
+  EXPECT_LT(
+    Distance(Deform(deformer, Targets({ HandleMotion() })).Positions, plane.Positions), 1e-12);
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Morph/TriangleGradientMorph.h"
-#include "Kernel/Morph/DiscreteFormsMorph.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Differential/FrameReconstruction.h"
-#include "Kernel/Mesh/Geometry.h"
-#include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Measure/Measures.h"
+#include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Morph/DiscreteFormsMorph.h"
+#include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/MorphVolume.h"
 #include "Kernel/Morph/RigidPlacement.h"
-#include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Morph/TriangleGradientMorph.h"
 #include "MorphShapes.h"
 #include "RealMeshes.h"
 
@@ -15,12 +15,12 @@
 
 #include <chrono>
 
-using cartan::TriangleGradientMorph;
 using cartan::DiscreteFormsMorph;
 using cartan::KeyFrames;
 using cartan::Points;
 using cartan::RigidPlacement;
 using cartan::SurfaceMorph;
+using cartan::TriangleGradientMorph;
 using Eigen::Vector3d;
 using morphshapes::Keys;
 using morphshapes::MeasureMorph;
@@ -53,10 +53,13 @@ std::vector<Method> Methods()
     { "forms", forms(Transitions::Forms, Solver::RotationAveraging) },
     { "conjugate gradients", forms(Transitions::Rotations, Solver::ConjugateGradients) },
     { "direct", forms(Transitions::Forms, Solver::Direct) },
-    { "isometric", [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
+    { "isometric",
+      [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
       { return std::make_unique<cartan::IsometricMorph>(keys); } },
-    { "deformation gradient", [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
-      { return std::make_unique<TriangleGradientMorph>(keys); }, false },
+    { "deformation gradient",
+      [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
+      { return std::make_unique<TriangleGradientMorph>(keys); },
+      false },
   };
 }
 
@@ -106,9 +109,9 @@ std::vector<std::pair<std::string, KeyFrames>> Cases()
     { "twisted bar", Keys(bar, { bar.Positions, morphshapes::Twist(bar, 150, 1, 5) }) },
     { "rolled plane", Keys(plane, { plane.Positions, rolled.Positions }) },
     { "squashed torus", Keys(torus, { torus.Positions, squashed.Positions }) },
-    { "two components",
-      Keys(both, { both.Positions, shapes::Union(squashed, rolled).Positions }) },
-    { "three keys", Keys(bar,
+    { "two components", Keys(both, { both.Positions, shapes::Union(squashed, rolled).Positions }) },
+    { "three keys",
+      Keys(bar,
         { bar.Positions, morphshapes::Twist(bar, 60, 1, 5), morphshapes::Bend(bar, 90, 1, 5) }) },
   };
 }
@@ -411,8 +414,7 @@ TEST(DiscreteFormsMorph, RefusesToGoWhereLengthsAreNegative)
   }
   catch (const cartan::Error& error)
   {
-    EXPECT_NE(std::string(error.what()).find("negative length"), std::string::npos)
-      << error.what();
+    EXPECT_NE(std::string(error.what()).find("negative length"), std::string::npos) << error.what();
   }
 }
 
@@ -460,8 +462,7 @@ TEST(RigidPlacement, KeepsWeightedPointsInPlace)
   double worst = 0.0;
   for (int v = 0; v < bar.NumberOfVertices(); ++v)
   {
-    worst = std::max(
-      worst, weights[v] * (positions.row(v) - bar.Positions.row(v)).norm());
+    worst = std::max(worst, weights[v] * (positions.row(v) - bar.Positions.row(v)).norm());
   }
   ShowFigure("pinned end moves by", worst);
   EXPECT_LT(worst, 0.01);

@@ -3,9 +3,9 @@
 
 #include "AllTriangles.h"
 #include "Kernel/Deformation/FrameDeformer.h"
-#include "Kernel/Mesh/Geometry.h"
-#include "Kernel/Measure/Measures.h"
 #include "Kernel/Deformation/RotationInvariantDeformer.h"
+#include "Kernel/Measure/Measures.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 #include "TestShapes.h"
 

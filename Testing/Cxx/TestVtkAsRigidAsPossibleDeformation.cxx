@@ -17,7 +17,9 @@ vtkSmartPointer<vtkPolyData> MarkedBar(int precision = VTK_DOUBLE)
   vtkSmartPointer<vtkPolyData> bar =
     vtktest::MakePolyData(shapes::Bar(4, 4, 40, { 1.0, 1.0, 10.0 }), precision);
   vtktest::AddHandles(
-    bar, [](const Eigen::Vector3d& p) { return p[2] < 1.0 ? 1 : p[2] > 9.0 ? 2 : 0; });
+    bar, [](const Eigen::Vector3d& p) { return p[2] < 1.0 ? 1
+                                          : p[2] > 9.0    ? 2
+                                                          : 0; });
   return bar;
 }
 
@@ -43,9 +45,9 @@ protected:
 
 TEST_F(AsRigidAsPossibleDeformation, LowersTheEnergyOfTheGuess)
 {
-  for (const int energy : { vtkAsRigidAsPossibleDeformation::SPOKES,
-         vtkAsRigidAsPossibleDeformation::SPOKES_AND_RIMS,
-         vtkAsRigidAsPossibleDeformation::SMOOTHED_ROTATIONS })
+  for (const int energy :
+    { vtkAsRigidAsPossibleDeformation::SPOKES, vtkAsRigidAsPossibleDeformation::SPOKES_AND_RIMS,
+      vtkAsRigidAsPossibleDeformation::SMOOTHED_ROTATIONS })
   {
     this->Filter->SetEnergy(energy);
     for (const int guess : { vtkAsRigidAsPossibleDeformation::REST_SHAPE,

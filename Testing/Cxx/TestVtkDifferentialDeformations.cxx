@@ -16,8 +16,7 @@ vtkSmartPointer<vtkPolyData> MarkedBar()
   const double low = bar.Positions.col(2).minCoeff();
   auto surface = vtktest::MakePolyData(bar);
   vtktest::AddHandles(surface,
-    [low](const Eigen::Vector3d& p)
-    { return p[2] < low + 0.6 ? 2 : (p[2] > low + 3.4 ? 1 : 0); });
+    [low](const Eigen::Vector3d& p) { return p[2] < low + 0.6 ? 2 : (p[2] > low + 3.4 ? 1 : 0); });
   return surface;
 }
 

@@ -589,9 +589,9 @@ TEST(MarkHandle, RefusesSelectionsThatMixPointsAndCells)
 TEST(MarkHandle, SelectsNothingWhereTheSelectionHasNothing)
 {
   Marker marker;
-  for (const auto& node : { MakeNode(vtkSelectionNode::POINT, {}),
-         MakeNode(vtkSelectionNode::POINT, { 121, 100000, -1 }),
-         MakeNode(vtkSelectionNode::CELL, { 200 }) })
+  for (const auto& node :
+    { MakeNode(vtkSelectionNode::POINT, {}), MakeNode(vtkSelectionNode::POINT, { 121, 100000, -1 }),
+      MakeNode(vtkSelectionNode::CELL, { 200 }) })
   {
     marker.Filter->SetSelectionData(MakeSelection(node));
     marker.ExpectWarning("the region has no points");
@@ -699,8 +699,7 @@ TEST(MarkHandle, MarksAllBlocksOfACompositeInput)
   marker.Filter->SetRegion(MakeSphere(0.0, 0.0, 0.11));
   const auto output = [&marker](int place) -> vtkPolyData*
   {
-    auto* result =
-      vtkMultiBlockDataSet::SafeDownCast(marker.Filter->GetOutputDataObject(0));
+    auto* result = vtkMultiBlockDataSet::SafeDownCast(marker.Filter->GetOutputDataObject(0));
     vtkDataObject* block = place == 0
       ? result->GetBlock(0)
       : vtkMultiBlockDataSet::SafeDownCast(result->GetBlock(1))->GetBlock(1);

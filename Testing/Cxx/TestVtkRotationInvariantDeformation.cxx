@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkRotationInvariantDeformation.h"
 
-#include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "VtkTestHelpers.h"
 #include "vtkHandleMotion.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkShapePreservingDeformation.h"
 
+#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Differential/Curvature.h"
 #include "Kernel/Measure/Measures.h"
-#include "Kernel/Algebra/Rotation.h"
 #include "VtkTestHelpers.h"
 #include "vtkHandleMotion.h"
 #include "vtkRotationInvariantDeformation.h"

@@ -693,10 +693,13 @@ TEST(SurfaceDeformation, ScaledWeightsMeanTheSameOnEveryMesh)
         square.Positions *= unit;
         Fixture fixture;
         fixture.Good = MakePolyData(square);
-        vtktest::AddHandles(fixture.Good, [unit](const Eigen::Vector3d& x)
-          { return x[1] < -0.499 * unit ? 1 : x[1] > 0.499 * unit ? 2 : 0; });
+        vtktest::AddHandles(fixture.Good,
+          [unit](const Eigen::Vector3d& x) {
+            return x[1] < -0.499 * unit ? 1 : x[1] > 0.499 * unit ? 2 : 0;
+          });
         vtkDataArray* handles = fixture.Good->GetPointData()->GetArray("Handle");
-        vtktest::AddArray(fixture.Good, "Weight", 1, [&](vtkIdType v, double* value)
+        vtktest::AddArray(fixture.Good, "Weight", 1,
+          [&](vtkIdType v, double* value)
           { *value = handles->GetTuple1(v) == 2 ? weight : Infinity; });
         fixture.Filter->SetInputData(fixture.Good);
         fixture.Motion->SetAngle(0);
@@ -722,10 +725,11 @@ TEST(SurfaceDeformation, ScaledWeightsHoldRegionsByTheirBorderAndSinglePoints)
   Shape plane = shapes::Plane(12, 1.0, 0.2);
   Fixture fixture;
   fixture.Good = MakePolyData(plane);
-  vtktest::AddHandles(fixture.Good, [&](const Eigen::Vector3d& x)
-    { return x[1] > 0.2 ? 2 : x == plane.Positions.row(20).transpose() ? 3 : 0; });
-  vtktest::AddArray(
-    fixture.Good, "Weight", 1, [&](vtkIdType, double* value) { *value = 0.3; });
+  vtktest::AddHandles(fixture.Good,
+    [&](const Eigen::Vector3d& x) {
+      return x[1] > 0.2 ? 2 : x == plane.Positions.row(20).transpose() ? 3 : 0;
+    });
+  vtktest::AddArray(fixture.Good, "Weight", 1, [&](vtkIdType, double* value) { *value = 0.3; });
   fixture.Filter->SetInputData(fixture.Good);
   fixture.Filter->SetHandleMotion(3, fixture.Motion);
   fixture.Motion->SetCenter(0, 0, 0);

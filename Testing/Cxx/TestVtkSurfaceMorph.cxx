@@ -61,8 +61,7 @@ protected:
   int RequestData(
     vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector) override
   {
-    const double time =
-      outputVector->GetInformationObject(0)->Get(Pipeline::UPDATE_TIME_STEP());
+    const double time = outputVector->GetInformationObject(0)->Get(Pipeline::UPDATE_TIME_STEP());
     this->Requests.push_back(time);
     const auto step = std::find(this->Times.begin(), this->Times.end(), time);
     EXPECT_NE(step, this->Times.end()) << "no time step: " << time;
@@ -141,8 +140,8 @@ TEST(VtkSurfaceMorph, MeetsTheKeyFramesToTheLastBit)
 TEST(VtkSurfaceMorph, KeepsEdgesWhereLinearInterpolationShrinks)
 {
   Fixture fixture;
-  const auto keys = morphshapes::Keys(
-    fixture.Bar, { PointsOf(fixture.Keys[0]), PointsOf(fixture.Keys[1]) });
+  const auto keys =
+    morphshapes::Keys(fixture.Bar, { PointsOf(fixture.Keys[0]), PointsOf(fixture.Keys[1]) });
   for (const int method : { vtkSurfaceMorph::DISCRETE_FORMS, vtkSurfaceMorph::ISOMETRIC,
          vtkSurfaceMorph::DEFORMATION_GRADIENT })
   {
@@ -194,8 +193,7 @@ TEST(VtkSurfaceMorph, InterpolatesTheTimeStepsOfOneInput)
   std::vector<vtkSmartPointer<vtkPolyData>> surfaces;
   for (int k = 0; k < 6; ++k)
   {
-    surfaces.push_back(
-      MakePolyData({ morphshapes::Bend(bar, 1 + 20.0 * k * k, 1, 5), bar.Faces }));
+    surfaces.push_back(MakePolyData({ morphshapes::Bend(bar, 1 + 20.0 * k * k, 1, 5), bar.Faces }));
   }
   vtkNew<TimeSource> source;
   source->SetSteps(times, surfaces);
@@ -527,8 +525,8 @@ TEST(VtkSurfaceMorph, RefusesWhatHasNoPlaceOrNoLength)
   vtktest::AddHandles(fixture.Keys[0], [](const Eigen::Vector3d&) { return 0; });
   fixture.Filter->Modified();
   fixture.ExpectError({ "No point", "\"Handle\"", "Mark Handle" });
-  vtktest::AddHandles(fixture.Keys[0],
-    [](const Eigen::Vector3d& x) { return x[0] < -0.4 && x[1] < -0.4 ? 1 : 0; });
+  vtktest::AddHandles(
+    fixture.Keys[0], [](const Eigen::Vector3d& x) { return x[0] < -0.4 && x[1] < -0.4 ? 1 : 0; });
   fixture.Filter->Modified();
   fixture.ExpectError({ "on one line", "three points" });
   fixture.Filter->SetPlacementToRigidInterpolation();

@@ -148,8 +148,7 @@ public:
     // Supernodes make the factorization fast, but the few right-hand sides of a
     // motion are solved twice as fast by the simplicial factor, which takes four
     // at a time through memory once. It is smaller, too.
-    return cholmod_change_factor(
-      CHOLMOD_REAL, 1, 0, 1, 1, this->Factors, &this->Common) != 0;
+    return cholmod_change_factor(CHOLMOD_REAL, 1, 0, 1, 1, this->Factors, &this->Common) != 0;
   }
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& rightHandSide) override
   {
@@ -185,7 +184,10 @@ private:
     {
       omp_set_max_active_levels(0);
     }
-    ~SerialOpenMp() { omp_set_max_active_levels(this->Levels); }
+    ~SerialOpenMp()
+    {
+      omp_set_max_active_levels(this->Levels);
+    }
     SerialOpenMp(const SerialOpenMp&) = delete;
     SerialOpenMp& operator=(const SerialOpenMp&) = delete;
 

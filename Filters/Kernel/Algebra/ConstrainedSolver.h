@@ -72,9 +72,9 @@ private:
   SolverBackend Backend;
   std::unique_ptr<Factor> Factors;
   std::vector<int> Free;
-  std::vector<int> FreeIndex;  // #U, -1 where fixed
-  SparseMatrix FreeBlock;      // lower triangle of A_ff + diag s_f
-  SparseMatrix Coupling;       // A_fc, #free x #U
+  std::vector<int> FreeIndex; // #U, -1 where fixed
+  SparseMatrix FreeBlock;     // lower triangle of A_ff + diag s_f
+  SparseMatrix Coupling;      // A_fc, #free x #U
   int Factorizations = 0;
   int Analyses = 0;
 };

@@ -57,8 +57,7 @@ Eigen::Matrix3d ProjectOnRotations(const Eigen::Matrix3d& a)
     // |X^-1| / |X| = |cofactors| / (det |X|).
     const double scale =
       std::sqrt(std::sqrt(cofactors.squaredNorm() / x.squaredNorm()) / determinant);
-    const Eigen::Matrix3d next =
-      (0.5 * scale) * x + (0.5 / (scale * determinant)) * cofactors;
+    const Eigen::Matrix3d next = (0.5 * scale) * x + (0.5 / (scale * determinant)) * cofactors;
     const double change = (next - x).squaredNorm();
     x = next;
     // The error after a step is about the square of the change before it.
@@ -140,9 +139,8 @@ Eigen::Matrix3d ProjectOnRotations(const Eigen::Matrix3d& a, const Eigen::Matrix
 Eigen::Matrix3d RotationFromVector(const Eigen::Vector3d& rotationVector)
 {
   const double angle = rotationVector.norm();
-  return angle > 0.0
-    ? Eigen::AngleAxisd(angle, rotationVector / angle).toRotationMatrix()
-    : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  return angle > 0.0 ? Eigen::AngleAxisd(angle, rotationVector / angle).toRotationMatrix()
+                     : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
 }
 
 bool FindSharedAxis(const std::vector<Eigen::Vector3d>& rotationVectors, Eigen::Vector3d& axis)

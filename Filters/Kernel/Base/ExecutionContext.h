@@ -19,8 +19,8 @@ public:
   /// `parallelFor(n, body)` calls body on disjoint ranges that cover [0, n),
   /// in any order and from any thread. `progress(fraction)` gets a number in
   /// [0, 1] and returns false to stop; it is called from the calling thread.
-  ExecutionContext(std::function<void(int, const Range&)> parallelFor,
-    std::function<bool(double)> progress)
+  ExecutionContext(
+    std::function<void(int, const Range&)> parallelFor, std::function<bool(double)> progress)
     : ParallelFor(std::move(parallelFor))
     , Progress(std::move(progress))
   {

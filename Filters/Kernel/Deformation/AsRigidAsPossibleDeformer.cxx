@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/AsRigidAsPossibleDeformer.h"
 
-#include "Mesh/Geometry.h"
 #include "Algebra/Rotation.h"
 #include "Deformation/RotationInvariantDeformer.h"
 #include "Deformation/ShapePreservingDeformer.h"
+#include "Mesh/Geometry.h"
 
 #include <Eigen/Cholesky>
 
@@ -84,13 +84,13 @@ AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, Rigi
   this->Problem.ClampWeights = energy != RigidityEnergy::SpokesAndRims;
   if (guess == InitialGuess::RotationInvariant)
   {
-    this->Guess = std::make_unique<RotationInvariantDeformer>(
-      this->Problem, backend, context.Part(0.0, 0.9));
+    this->Guess =
+      std::make_unique<RotationInvariantDeformer>(this->Problem, backend, context.Part(0.0, 0.9));
   }
   else
   {
-    this->Guess = std::make_unique<ShapePreservingDeformer>(
-      this->Problem, backend, context.Part(0.0, 0.9));
+    this->Guess =
+      std::make_unique<ShapePreservingDeformer>(this->Problem, backend, context.Part(0.0, 0.9));
   }
   this->System = this->Guess->GetPositionSystem();
   this->MovingHandles = MovingHandleOfVertices(this->Problem);
@@ -189,8 +189,7 @@ void AsRigidAsPossibleDeformer::BuildCells()
       this->Spokes.push_back({ number(mesh.Neighbor(d)), weights[d] });
     }
     this->SpokeOffsets.push_back(static_cast<int>(this->Spokes.size()));
-    this->HoldsRotation.push_back(
-      !this->Problem.ConstrainPositions && this->MovingHandles[v] >= 0);
+    this->HoldsRotation.push_back(!this->Problem.ConstrainPositions && this->MovingHandles[v] >= 0);
   }
   const auto numberOfSites = static_cast<Eigen::Index>(this->Vertices.size());
   this->Rest.resize(numberOfSites, 3);
@@ -299,8 +298,7 @@ void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
       {
         const int neighbor = this->Spokes[s].Neighbor;
         const Row edge = this->Current.row(neighbor) - this->Current.row(rim.Left);
-        const Row restEdge =
-          rim.RimWeight * (this->Rest.row(neighbor) - this->Rest.row(rim.Left));
+        const Row restEdge = rim.RimWeight * (this->Rest.row(neighbor) - this->Rest.row(rim.Left));
         covariance += edge.transpose() * restEdge;
       }
     }
@@ -339,8 +337,7 @@ void AsRigidAsPossibleDeformer::FitRotations(const ExecutionContext& context)
   }
 }
 
-void AsRigidAsPossibleDeformer::EvaluateCell(
-  int cell, double bending, const HandleTargets& targets)
+void AsRigidAsPossibleDeformer::EvaluateCell(int cell, double bending, const HandleTargets& targets)
 {
   const Row rest = this->Rest.row(cell);
   const Row current = this->Current.row(cell);
@@ -364,7 +361,7 @@ void AsRigidAsPossibleDeformer::EvaluateCell(
       // A pair of coupled rotations counts in both its cells. Where one is held
       // and so never evaluated again, the other counts for both.
       const int limit = cell < this->ActiveCount ? this->ActiveCount : this->CellCount;
-      const double times = spoke.Neighbor >= limit ? 2.0
+      const double times = spoke.Neighbor >= limit                        ? 2.0
         : cell >= this->ActiveCount && spoke.Neighbor < this->ActiveCount ? 0.0
                                                                           : 1.0;
       turning += times * spoke.Weight * (rotation - other).squaredNorm();
@@ -466,8 +463,7 @@ void AsRigidAsPossibleDeformer::Start(
         auto rotation = MatrixAt(this->Rotations, cell);
         if (this->HoldsRotation[cell])
         {
-          rotation =
-            ProjectOnRotations(HandleTransform(targets, v, this->MovingHandles[v]));
+          rotation = ProjectOnRotations(HandleTransform(targets, v, this->MovingHandles[v]));
         }
         else if (isGuessed)
         {

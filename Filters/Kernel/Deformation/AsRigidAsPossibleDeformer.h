@@ -71,8 +71,7 @@ class AsRigidAsPossibleDeformer : public SurfaceDeformer
 public:
   /// Factorizes once (twice with ConstrainPositions off); see HandleLaplacian
   /// for what it throws. PositionWeights serve as Weights too.
-  AsRigidAsPossibleDeformer(HandleProblem problem,
-    RigidityEnergy energy = RigidityEnergy::Spokes,
+  AsRigidAsPossibleDeformer(HandleProblem problem, RigidityEnergy energy = RigidityEnergy::Spokes,
     InitialGuess guess = InitialGuess::ShapePreserving,
     SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
   ~AsRigidAsPossibleDeformer() override;
@@ -154,24 +153,24 @@ private:
   // of cells, which stay at rest.
   int ActiveCount = 0;
   int CellCount = 0;
-  std::vector<int> Vertices;        // #sites
-  std::vector<int> Unknowns;        // #unknowns, System's number of a cell
-  std::vector<int> Cells;           // #unknowns, the inverse
-  std::vector<char> HoldsRotation;  // #cells
-  std::vector<int> SpokeOffsets;    // #cells + 1
+  std::vector<int> Vertices;       // #sites
+  std::vector<int> Unknowns;       // #unknowns, System's number of a cell
+  std::vector<int> Cells;          // #unknowns, the inverse
+  std::vector<char> HoldsRotation; // #cells
+  std::vector<int> SpokeOffsets;   // #cells + 1
   std::vector<Spoke> Spokes;
-  std::vector<Rim> Rims;            // as Spokes; empty without rims
+  std::vector<Rim> Rims; // as Spokes; empty without rims
   /// Active cells in groups of which no two are neighbours; empty unless
   /// rotations are coupled.
   std::vector<std::vector<int>> Colors;
-  std::vector<int> MovingHandles;   // #V, index in Moving or -1
+  std::vector<int> MovingHandles; // #V, index in Moving or -1
   double FreeArea = 0.0;
 
-  Points Rest;                      // #sites x 3
-  Points Current;                   // #sites x 3
-  Matrices Rotations;               // #sites x 9
-  Eigen::VectorXd CellEnergies;     // #cells
-  Points Residual;                  // #unknowns x 3: b - L x
+  Points Rest;                  // #sites x 3
+  Points Current;               // #sites x 3
+  Matrices Rotations;           // #sites x 9
+  Eigen::VectorXd CellEnergies; // #cells
+  Points Residual;              // #unknowns x 3: b - L x
   bool HasPrevious = false;
   std::vector<double> Energies;
   bool Converged = false;

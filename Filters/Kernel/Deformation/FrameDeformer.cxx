@@ -2,8 +2,8 @@
 #include "Deformation/FrameDeformer.h"
 
 #include "Differential/Curvature.h"
-#include "Mesh/Geometry.h"
 #include "Measure/Measures.h"
+#include "Mesh/Geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,8 +31,7 @@ FrameDeformer::FrameDeformer(
   context.Report(0.1);
   this->Frames = std::make_shared<HandleLaplacian>(this->Problem, frameWeights, Hold::AllHandles,
     backend, context.Part(0.1, isShared ? 1.0 : 0.5));
-  this->EdgeWeights =
-    sameWeights ? frameWeights : symmetricWeights(this->Problem.PositionWeights);
+  this->EdgeWeights = sameWeights ? frameWeights : symmetricWeights(this->Problem.PositionWeights);
   this->Positions = isShared
     ? this->Frames
     : std::make_shared<HandleLaplacian>(this->Problem, this->EdgeWeights,
@@ -67,8 +66,8 @@ void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
     result.Positions.row(held.Vertex) =
       HandleTarget(this->Problem, targets, held.Vertex, held.Handle).transpose();
   }
-  const bool isDirect = !this->PreservesVolume() &&
-    this->DeformDirectly(targets, result.Positions, context);
+  const bool isDirect =
+    !this->PreservesVolume() && this->DeformDirectly(targets, result.Positions, context);
   if (!isDirect || wantTransforms)
   {
     if (this->Transforms.rows() == 0)
@@ -143,16 +142,16 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
   const bool isByTriangle = this->TriangleTransforms.rows() > 0;
   if (isByTriangle && this->TriangleWeights.rows() == 0)
   {
-    this->TriangleWeights = CornerWeights(
-      *this->Problem.Mesh, rest, this->Problem.PositionWeights, context);
+    this->TriangleWeights =
+      CornerWeights(*this->Problem.Mesh, rest, this->Problem.PositionWeights, context);
   }
   // Neutral offset: the target of an edge, R_mean (p_j - p_i), is what its two
   // ends make of it when each carries the middle of the body under it rigidly,
   //   (R_i + R_j)/2 (p_j - p_i) + (R_j - R_i) (o_i + o_j)/2,
   // with o from the middle to the skin: the skin stretches outside of a bend
   // and shrinks inside, and the middle keeps its length.
-  const Points* offsets = this->PreservesVolume() &&
-      this->Correction == VolumeCorrection::NeutralOffset
+  const Points* offsets =
+    this->PreservesVolume() && this->Correction == VolumeCorrection::NeutralOffset
     ? &this->Model->Offsets
     : nullptr;
   Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
@@ -180,8 +179,7 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
           }
           if (offsets)
           {
-            sum += half *
-              ((transform - other) * (offsets->row(v) + offsets->row(w)).transpose());
+            sum += half * ((transform - other) * (offsets->row(v) + offsets->row(w)).transpose());
           }
           if (edge->Neighbor >= system.NumberOfUnknowns())
           {
@@ -220,8 +218,7 @@ void FrameDeformer::ScaleFrames(
     // The depth of the surface at rest serves the deformed one too.
     const double k1 = curvatures.Maximum[v];
     const double k2 = curvatures.Minimum[v];
-    const double height =
-      ColumnHeight(ColumnDepth(this->Model->LocalDepth[v], k1, k2), k1, k2);
+    const double height = ColumnHeight(ColumnDepth(this->Model->LocalDepth[v], k1, k2), k1, k2);
     const double ratio = this->Model->ColumnHeight[v] / height;
     if (std::isfinite(ratio) && ratio > 0.0)
     {

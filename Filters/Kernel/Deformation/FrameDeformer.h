@@ -99,8 +99,8 @@ private:
   void SolvePositions(const HandleTargets& targets, const Matrices& transforms,
     DeformedSurface& result, const ExecutionContext& context);
   Eigen::Vector3d TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const;
-  void ScaleFrames(const HandleTargets& targets, DeformedSurface& result,
-    const ExecutionContext& context);
+  void ScaleFrames(
+    const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
   void CloseVolumes(Points& positions);
 
   VolumeCorrection Correction = VolumeCorrection::None;

@@ -17,8 +17,8 @@ double HoldWeight(const HandleProblem& problem, int vertex)
 }
 
 /// Marks the unknown vertices that a moving handle reaches through unknown ones.
-std::vector<char> ReachedUnknowns(const TriangleMesh& mesh, const std::vector<char>& isHeld,
-  const std::vector<int>& moving)
+std::vector<char> ReachedUnknowns(
+  const TriangleMesh& mesh, const std::vector<char>& isHeld, const std::vector<int>& moving)
 {
   const int numberOfVertices = mesh.NumberOfVertices();
   std::vector<char> isReached(numberOfVertices, 0);

@@ -128,8 +128,7 @@ void LaplacianDeformer::PrepareImplicit(const ExecutionContext& context)
       {
         for (int c = 0; c < 3; ++c)
         {
-          const double value =
-            (r == c ? l : 0.0) - turned(r, 3 * static_cast<Eigen::Index>(k) + c);
+          const double value = (r == c ? l : 0.0) - turned(r, 3 * static_cast<Eigen::Index>(k) + c);
           entries.emplace_back(firstEquation + r, 3 * ring[k] + c, weight * value);
         }
       }
@@ -179,8 +178,7 @@ void LaplacianDeformer::EstimateRotations(const Points& current, const Execution
         Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
         for (const int w : ring)
         {
-          covariance +=
-            (current.row(w).transpose() - mean) * (rest.row(w) - restMean.transpose());
+          covariance += (current.row(w).transpose() - mean) * (rest.row(w) - restMean.transpose());
         }
         MatrixAt(this->Transforms, this->Rows[row]) = ProjectOnRotations(covariance);
       }
@@ -212,8 +210,8 @@ void LaplacianDeformer::SolveImplicitly(Points& positions)
     const Eigen::Vector4d similarity = this->Fits[row] * ringPositions;
     const double s = similarity[0];
     Eigen::Matrix3d transform;
-    transform << s, -similarity[3], similarity[2], similarity[3], s, -similarity[1],
-      -similarity[2], similarity[1], s;
+    transform << s, -similarity[3], similarity[2], similarity[3], s, -similarity[1], -similarity[2],
+      similarity[1], s;
     MatrixAt(this->Transforms, v) = ProjectOnRotations(transform);
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/PoissonDeformer.h"
 
-#include "Mesh/GeodesicDistance.h"
 #include "Deformation/MotionBlend.h"
+#include "Mesh/GeodesicDistance.h"
 
 #include <cmath>
 

@@ -5,8 +5,8 @@
 
 namespace cartan
 {
-PolyharmonicSystem::PolyharmonicSystem(const HandleProblem& problem, int order,
-  SolverBackend backend, const ExecutionContext& context)
+PolyharmonicSystem::PolyharmonicSystem(
+  const HandleProblem& problem, int order, SolverBackend backend, const ExecutionContext& context)
   : Problem(problem)
   , MovingHandles(MovingHandleOfVertices(problem))
   , Solver(backend)

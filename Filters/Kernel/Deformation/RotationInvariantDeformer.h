@@ -40,8 +40,8 @@ enum class FrameProjection
 class RotationInvariantDeformer : public FrameDeformer
 {
 public:
-  RotationInvariantDeformer(HandleProblem problem,
-    SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
+  RotationInvariantDeformer(HandleProblem problem, SolverBackend backend = SolverBackend::Automatic,
+    const ExecutionContext& context = {});
 
   void SetFrameProjection(FrameProjection projection) { this->Projection = projection; }
 
@@ -52,8 +52,7 @@ protected:
 
 private:
   bool UsesRotations(const HandleTargets& targets) const;
-  void BlendMotions(
-    const HandleTargets& targets, bool project, const ExecutionContext& context);
+  void BlendMotions(const HandleTargets& targets, bool project, const ExecutionContext& context);
   void ComputeDragFields(const ExecutionContext& context);
 
   FrameProjection Projection = FrameProjection::Automatic;

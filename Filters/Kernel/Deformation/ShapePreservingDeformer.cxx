@@ -119,8 +119,7 @@ void ShapePreservingDeformer::ComputeTransforms(
   const HandleLaplacian& frames = *this->Frames;
   for (const HandleVertex& held : this->HandleVertices)
   {
-    MatrixAt(this->Transforms, held.Vertex) =
-      HandleTransform(targets, held.Vertex, held.Handle);
+    MatrixAt(this->Transforms, held.Vertex) = HandleTransform(targets, held.Vertex, held.Handle);
   }
 
   Eigen::Vector3d axis;
@@ -201,8 +200,7 @@ void ShapePreservingDeformer::BlendStretches(const HandleTargets& targets)
   bool areAllRigid = true;
   if (targets.Transforms.rows())
   {
-    areAllRigid =
-      std::all_of(this->HandleVertices.begin(), this->HandleVertices.end(), isRigid);
+    areAllRigid = std::all_of(this->HandleVertices.begin(), this->HandleVertices.end(), isRigid);
   }
   for (std::size_t k = 0; k < targets.Motions.size() && targets.Transforms.rows() == 0; ++k)
   {
@@ -300,8 +298,8 @@ Field ShapePreservingDeformer::Iterate(Field eta, const ExecutionContext& contex
         entries.emplace_back(b, a, -value);
         // d W_T / d eta is -4 eta / (4 + |eta|^2)^3; moved to the right.
         const double denominator = 4.0 + eta.row(corners[c]).squaredNorm();
-        rightHandSide.row(corners[c]) += 2.0 * dirichlet /
-          (denominator * denominator * denominator) * eta.row(corners[c]);
+        rightHandSide.row(corners[c]) +=
+          2.0 * dirichlet / (denominator * denominator * denominator) * eta.row(corners[c]);
       }
     }
     SparseMatrix matrix(numberOfLocals, numberOfLocals);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/SimilarityDeformer.h"
 
+#include "Algebra/Rotation.h"
 #include "Differential/Laplacian.h"
 #include "Measure/Measures.h"
-#include "Algebra/Rotation.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -718,8 +718,7 @@ void SimilarityDeformer::Deform(const HandleTargets& targets, bool wantTransform
       const bool isFromEdges =
         refit > 0 || this->Reconstruction == SimilarityReconstruction::EdgeForm;
       this->RefitTransforms(result.Positions, isFromEdges, context);
-      this->Edges->Deform(
-        targets, false, result, context.Part(begin, begin + 0.4 / this->Refits));
+      this->Edges->Deform(targets, false, result, context.Part(begin, begin + 0.4 / this->Refits));
     }
   }
   result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());

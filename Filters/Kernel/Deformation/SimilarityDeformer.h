@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Differential/RingGradients.h"
 #include "Deformation/FrameDeformer.h"
+#include "Differential/RingGradients.h"
 
 namespace cartan
 {
@@ -141,8 +141,7 @@ private:
   void BlendDragFields(const HandleTargets& targets, const ExecutionContext& context);
   void SetTransform(int vertex, const Eigen::Matrix3d& gradient);
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context);
-  void RefitTransforms(
-    const Points& positions, bool goesBeyond, const ExecutionContext& context);
+  void RefitTransforms(const Points& positions, bool goesBeyond, const ExecutionContext& context);
   void Reconstruct(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
   void PullBack(Points& positions) const;
@@ -152,7 +151,7 @@ private:
   HandleProblem Problem;
   SolverBackend Backend;
   std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
-  Eigen::VectorXd SoftPositions; ///< #V, w^2 of softly held positions
+  Eigen::VectorXd SoftPositions;  ///< #V, w^2 of softly held positions
   Eigen::VectorXd EdgeWeights;    ///< #D
   Eigen::VectorXd RowScales;      ///< #V, s_i of the functional
   Eigen::VectorXd EdgeLengths;    ///< #V, h_i

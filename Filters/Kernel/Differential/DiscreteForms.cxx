@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/DiscreteForms.h"
 
-#include "Mesh/Geometry.h"
 #include "Algebra/Rotation.h"
+#include "Mesh/Geometry.h"
 
 #include <cmath>
 #include <limits>
@@ -110,8 +110,7 @@ bool SolveCorner(const CornerAtNeighbor& corner, Eigen::Ref<Eigen::Matrix3d> tra
   const bool useFirst = uTangent.squaredNorm() > vTangent.squaredNorm();
   const Eigen::Vector3d tangent = (useFirst ? uTangent : vTangent).normalized();
   const double angle = useFirst ? corner.FirstAngle : corner.SecondAngle;
-  const Eigen::Vector3d b1 =
-    std::cos(angle) * tangent - std::sin(angle) * normal.cross(tangent);
+  const Eigen::Vector3d b1 = std::cos(angle) * tangent - std::sin(angle) * normal.cross(tangent);
   transition.col(0) = b1;
   transition.col(1) = normal.cross(b1);
   transition.col(2) = normal;
@@ -197,8 +196,8 @@ bool TransitionByProcrustes(const TriangleMesh& mesh, const Points& ring, int i,
   {
     const Eigen::Vector3d edge = fromI.col(1);
     const Eigen::Vector3d side = fromI.col(apex);
-    hasArea = hasArea ||
-      HasArea(edge.cross(side).norm(), LongestEdgeSquared(fromI.col(0), edge, side));
+    hasArea =
+      hasArea || HasArea(edge.cross(side).norm(), LongestEdgeSquared(fromI.col(0), edge, side));
   }
   if (!hasArea)
   {

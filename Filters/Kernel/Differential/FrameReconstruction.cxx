@@ -45,8 +45,8 @@ SparseMatrix FrameMatrix(const TriangleMesh& mesh, const Transitions& transition
       blocks.emplace_back(mesh.Neighbor(d), -(incoming + outgoing.transpose()));
     }
     blocks.emplace_back(j, diagonal);
-    std::sort(blocks.begin(), blocks.end(),
-      [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::sort(
+      blocks.begin(), blocks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (int column = 0; column < 3; ++column)
     {
       matrix.startVec(3 * j + column);

@@ -30,8 +30,7 @@ Contribution TriangleContribution(LaplacianWeights weights, const Eigen::Vector3
   const bool hasArea = HasArea(twiceArea, longestSquared);
   if (weights == LaplacianWeights::Cotangent)
   {
-    const double cotangent =
-      hasArea ? (p - r).dot(q - r) / twiceArea : 1.0 / std::sqrt(3.0);
+    const double cotangent = hasArea ? (p - r).dot(q - r) / twiceArea : 1.0 / std::sqrt(3.0);
     return { 0.5 * cotangent, 0.5 * cotangent };
   }
   if (!hasArea)

@@ -146,8 +146,8 @@ int RingGradients::AddGivenRow(int vertex)
   return this->RowOfVertex[vertex];
 }
 
-void RingGradients::BuildRows(const TriangleMesh& mesh,
-  const GradientConstraints& constraints, const ExecutionContext& context)
+void RingGradients::BuildRows(
+  const TriangleMesh& mesh, const GradientConstraints& constraints, const ExecutionContext& context)
 {
   // With u_k = v_k - v_0 and the sum over k of V~_i V_i^T written out, a
   // neighbour k has (V_i V_i^T)^-1 (u_k - u_i / |N|) and i itself
@@ -231,8 +231,8 @@ void RingGradients::BuildRows(const TriangleMesh& mesh,
             { entry->Column, entry->Coefficient / static_cast<double>(lenders.size()) });
         }
       }
-      std::sort(sum.begin(), sum.end(),
-        [](const auto& a, const auto& b) { return a.Column < b.Column; });
+      std::sort(
+        sum.begin(), sum.end(), [](const auto& a, const auto& b) { return a.Column < b.Column; });
       Row3 merged;
       for (const auto& entry : sum)
       {

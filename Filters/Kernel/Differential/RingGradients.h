@@ -72,8 +72,8 @@ SparseRows<Value> MakeRows(int count, const ExecutionContext& context,
       const std::lock_guard<std::mutex> lock(mutex);
       parts.emplace_back(begin, std::move(part));
     });
-  std::sort(parts.begin(), parts.end(),
-    [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(
+    parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   SparseRows<Value> all;
   for (auto& [begin, part] : parts)
   {
@@ -232,8 +232,8 @@ public:
 private:
   using Row3 = std::vector<SparseRows<Eigen::Vector3d>::Entry>;
 
-  void DisplaceDegenerate(const TriangleMesh& mesh, const GradientConstraints& constraints,
-    const Points& normals);
+  void DisplaceDegenerate(
+    const TriangleMesh& mesh, const GradientConstraints& constraints, const Points& normals);
   void NumberPositions(const TriangleMesh& mesh, const GradientConstraints& constraints);
   void BuildRows(const TriangleMesh& mesh, const GradientConstraints& constraints,
     const ExecutionContext& context);
@@ -249,7 +249,7 @@ private:
   std::vector<int> PositionColumns; // #V
   std::vector<int> Givens;
   std::vector<int> Active;
-  std::vector<int> RowOfVertex;  // #V
+  std::vector<int> RowOfVertex; // #V
   std::vector<int> VertexOfRow;
   std::vector<char> IsGivenRow;
   SparseRows<Eigen::Vector3d> Gradients;

@@ -66,8 +66,8 @@ private:
 };
 }
 
-RotationAveraging::RotationAveraging(int numberOfNodes, std::vector<Edge> edges,
-  std::shared_ptr<const ConstrainedSolver> laplacian)
+RotationAveraging::RotationAveraging(
+  int numberOfNodes, std::vector<Edge> edges, std::shared_ptr<const ConstrainedSolver> laplacian)
   : NodeCount(numberOfNodes)
   , Edges(std::move(edges))
   , Laplacian(std::move(laplacian))

@@ -31,8 +31,8 @@ public:
 
   /// `laplacian` is factorized: the matrix sum (v_from - v_to)^2, with a fixed
   /// node in each component at least. Frames of fixed nodes are kept.
-  RotationAveraging(int numberOfNodes, std::vector<Edge> edges,
-    std::shared_ptr<const ConstrainedSolver> laplacian);
+  RotationAveraging(
+    int numberOfNodes, std::vector<Edge> edges, std::shared_ptr<const ConstrainedSolver> laplacian);
 
   struct Result
   {
@@ -45,8 +45,8 @@ public:
   /// MaximumSteps: where gross misfits make it slow, the rest has long settled
   /// then. The steps are the same for the same transitions
   /// in any place, and for those of the reversed motion.
-  Result Improve(const Matrices& transitions, Matrices& frames,
-    const ExecutionContext& context = {}) const;
+  Result Improve(
+    const Matrices& transitions, Matrices& frames, const ExecutionContext& context = {}) const;
 
   static constexpr int MaximumSteps = 50;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Measure/Measures.h"
 
-#include "Mesh/Geometry.h"
-#include "Differential/Laplacian.h"
 #include "Algebra/Rotation.h"
+#include "Differential/Laplacian.h"
+#include "Mesh/Geometry.h"
 
 #include <Eigen/Geometry>
 

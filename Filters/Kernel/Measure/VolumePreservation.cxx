@@ -3,9 +3,9 @@
 
 #include "Algebra/ConstrainedSolver.h"
 #include "Differential/Curvature.h"
-#include "Mesh/Geometry.h"
 #include "Differential/Laplacian.h"
 #include "Measure/Measures.h"
+#include "Mesh/Geometry.h"
 
 #include <algorithm>
 #include <array>
@@ -132,8 +132,7 @@ void FindEnclosingComponents(const TriangleMesh& mesh, const Points& points, Vol
   if (!inverted.IsEmpty())
   {
     model.Warning += (model.Warning.empty() ? "" : " ");
-    model.Warning += "No volume is preserved in " +
-      inverted.Describe("component", "components") +
+    model.Warning += "No volume is preserved in " + inverted.Describe("component", "components") +
       " that are oriented inside out: flip the triangles (Surface Normals, Flip Normals).";
   }
 }
@@ -173,8 +172,8 @@ VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
           {
             continue;
           }
-          const double depth = MeanDepth(points.row(v).transpose(), normals.row(v).transpose(),
-            areaVectors, offset, castRay);
+          const double depth = MeanDepth(
+            points.row(v).transpose(), normals.row(v).transpose(), areaVectors, offset, castRay);
           model.IsMeasured[v] = depth >= 0.0;
           model.LocalDepth[v] = std::max(depth, 0.0);
         }
@@ -202,8 +201,7 @@ VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
   if (!unmeasured.IsEmpty())
   {
     model.Warning += (model.Warning.empty() ? "" : " ");
-    model.Warning += "No volume is preserved in " +
-      unmeasured.Describe("component", "components") +
+    model.Warning += "No volume is preserved in " + unmeasured.Describe("component", "components") +
       " whose inside no ray has found: the surface is folded flat, or crosses itself.";
   }
   if (std::none_of(
@@ -298,8 +296,7 @@ std::vector<double> VolumeClosingSteps(const TriangleMesh& mesh, const Points& p
     Eigen::Matrix3d u;
     for (int corner = 0; corner < 3; ++corner)
     {
-      x.col(corner) =
-        points.row(mesh.GetTriangles()(t, corner)).transpose() - origins[component];
+      x.col(corner) = points.row(mesh.GetTriangles()(t, corner)).transpose() - origins[component];
       u.col(corner) = direction.row(mesh.GetTriangles()(t, corner)).transpose();
     }
     auto& cubic = cubics[component];

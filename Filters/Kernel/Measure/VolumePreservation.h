@@ -66,6 +66,5 @@ Points VolumeGradient(const TriangleMesh& mesh, const Points& points);
 /// volume is a cubic in q, whose root nearest to 0 is taken. Components whose
 /// direction changes no volume, or cannot reach the given one, keep 0.
 std::vector<double> VolumeClosingSteps(const TriangleMesh& mesh, const Points& points,
-  const Points& direction, const std::vector<char>& takesPart,
-  const std::vector<double>& volumes);
+  const Points& direction, const std::vector<char>& takesPart, const std::vector<double>& volumes);
 }

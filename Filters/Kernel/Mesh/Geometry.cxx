@@ -96,8 +96,8 @@ Eigen::VectorXd MixedVoronoiAreas(
           else if (twiceArea > 0.0)
           {
             // |pq|^2 cot(r) + |pr|^2 cot(q), over eight.
-            areas[v] += (pq.squaredNorm() * pr.dot(qr) - pr.squaredNorm() * pq.dot(qr)) /
-              (8.0 * twiceArea);
+            areas[v] +=
+              (pq.squaredNorm() * pr.dot(qr) - pr.squaredNorm() * pq.dot(qr)) / (8.0 * twiceArea);
           }
         }
       }

@@ -265,8 +265,8 @@ TriangleMesh::TriangleMesh(int numberOfVertices, Triangles triangles)
   if (this->Corners.rows() > std::numeric_limits<int>::max() / 6)
   {
     throw Error(ErrorCode::BadInput,
-      "The surface has " + std::to_string(this->Corners.rows()) +
-        " triangles; at most " + std::to_string(std::numeric_limits<int>::max() / 6) +
+      "The surface has " + std::to_string(this->Corners.rows()) + " triangles; at most " +
+        std::to_string(std::numeric_limits<int>::max() / 6) +
         " are supported: decimate or split it.");
   }
   MeshReport report;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Morph/DiscreteFormsMorph.h"
 
+#include "Algebra/Rotation.h"
 #include "Differential/FrameReconstruction.h"
 #include "Differential/Laplacian.h"
-#include "Algebra/Rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,16 +78,16 @@ DiscreteFormsMorph::DiscreteFormsMorph(const KeyFrames& keys, Transitions transi
     }
   }
   const auto numberOfEdges = static_cast<Eigen::Index>(edges.size());
-  this->Averaging = std::make_unique<RotationAveraging>(
-    mesh.NumberOfVertices(), std::move(edges), this->Laplacian);
+  this->Averaging =
+    std::make_unique<RotationAveraging>(mesh.NumberOfVertices(), std::move(edges), this->Laplacian);
 
   Field forms(3 * directedEdges, numberOfKeys);
   std::vector<Matrices> edgeTransitions;
   Eigen::VectorXd previousAngles;
   for (int k = 0; k < numberOfKeys; ++k)
   {
-    const ExecutionContext part = context.Part(
-      0.3 + 0.6 * k / numberOfKeys, 0.3 + 0.6 * (k + 1.0) / numberOfKeys);
+    const ExecutionContext part =
+      context.Part(0.3 + 0.6 * k / numberOfKeys, 0.3 + 0.6 * (k + 1.0) / numberOfKeys);
     const Points& positions = keys.Positions[k];
     const Matrices frames = VertexFrames(mesh, positions, part);
     DiscreteForms form = ComputeDiscreteForms(mesh, positions, frames, part);
@@ -157,8 +157,7 @@ DiscreteForms DiscreteFormsMorph::FormsAt(double t, const ExecutionContext& cont
   {
     throw Error(ErrorCode::BadInput,
       "At the parameter " + std::to_string(t) +
-        " edges of negative length would be needed around " +
-        negative.Describe("point", "points") +
+        " edges of negative length would be needed around " + negative.Describe("point", "points") +
         ": choose a parameter nearer to those of the key frames.");
   }
   return forms;
@@ -171,8 +170,8 @@ Matrices DiscreteFormsMorph::EdgeTransitionsAt(
   Matrices result(numberOfEdges, 9);
   if (this->Method == Transitions::Forms)
   {
-    const cartan::Transitions all = TransitionsFromForms(
-      *this->Mesh, forms, TransitionMethod::Procrustes, context);
+    const cartan::Transitions all =
+      TransitionsFromForms(*this->Mesh, forms, TransitionMethod::Procrustes, context);
     for (int e = 0; e < numberOfEdges; ++e)
     {
       result.row(e) = all.row(this->Directed[e]);
@@ -217,9 +216,8 @@ Matrices DiscreteFormsMorph::FramesAt(
     for (int part = 1; part < parts; ++part)
     {
       const double between = start.Parameter + (t - start.Parameter) * part / parts;
-      this->Average(
-        this->EdgeTransitionsAt(between, this->FormsAt(between, context), context), frames,
-        context);
+      this->Average(this->EdgeTransitionsAt(between, this->FormsAt(between, context), context),
+        frames, context);
     }
     isConverged = this->Average(edgeTransitions, frames, context);
   }

@@ -2,11 +2,10 @@
 #pragma once
 
 #include "Differential/DiscreteForms.h"
+#include "Differential/RotationAveraging.h"
 #include "Morph/FrameMemory.h"
 #include "Morph/KeyInterpolation.h"
-#include "Differential/RotationAveraging.h"
 #include "Morph/SurfaceMorph.h"
-
 
 namespace cartan
 {
@@ -70,10 +69,10 @@ private:
   std::vector<double> Parameters; // of the key frames
   Transitions Method;
   FrameSolver Solver;
-  KeyInterpolation Forms;       // rows: lengths, angles, heights of all directed edges
-  Matrices MeanTransitions;     // #edges x 9, of Transitions::Rotations
-  KeyInterpolation FromMean;    // 3 #edges rows, rotation vectors
-  std::vector<int> Directed;    // #edges, the directed edge of each
+  KeyInterpolation Forms;    // rows: lengths, angles, heights of all directed edges
+  Matrices MeanTransitions;  // #edges x 9, of Transitions::Rotations
+  KeyInterpolation FromMean; // 3 #edges rows, rotation vectors
+  std::vector<int> Directed; // #edges, the directed edge of each
   std::shared_ptr<ConstrainedSolver> Laplacian;
   std::unique_ptr<RotationAveraging> Averaging;
   ConstrainedSolver FrameSystem; // of FrameSolver::Direct

@@ -77,8 +77,8 @@ double HalfCotangent(const Layouts& layouts, int t, int corner)
 }
 }
 
-std::unique_ptr<RotationAveraging> HingeAveraging(const HingeTopology& topology,
-  const std::vector<char>& isHeld, const ExecutionContext& context)
+std::unique_ptr<RotationAveraging> HingeAveraging(
+  const HingeTopology& topology, const std::vector<char>& isHeld, const ExecutionContext& context)
 {
   const int numberOfHinges = topology.NumberOfHinges();
   Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> arcs(numberOfHinges, 2);
@@ -90,15 +90,15 @@ std::unique_ptr<RotationAveraging> HingeAveraging(const HingeTopology& topology,
     edges.push_back({ hinge.Left, hinge.Right });
   }
   auto laplacian = std::make_shared<ConstrainedSolver>();
-  laplacian->Factorize(GraphLaplacian(topology.NumberOfTriangles(), arcs,
-                         Eigen::VectorXd::Ones(numberOfHinges)),
+  laplacian->Factorize(
+    GraphLaplacian(topology.NumberOfTriangles(), arcs, Eigen::VectorXd::Ones(numberOfHinges)),
     isHeld, {}, {}, context);
   return std::make_unique<RotationAveraging>(
     topology.NumberOfTriangles(), std::move(edges), std::move(laplacian));
 }
 
-IsometricMorph::IsometricMorph(const KeyFrames& keys, const IsometricMorphOptions& options,
-  const ExecutionContext& context)
+IsometricMorph::IsometricMorph(
+  const KeyFrames& keys, const IsometricMorphOptions& options, const ExecutionContext& context)
   : Topology(*keys.Mesh)
   , Options(options)
 {
@@ -197,8 +197,7 @@ void IsometricMorph::SetUpStitching(const ExecutionContext& context)
   }
   if (this->Options.Type == IsometricMorphOptions::Method::Automatic)
   {
-    this->Averaging =
-      HingeAveraging(this->Topology, isHeldTriangle, context.Part(0.0, 0.5));
+    this->Averaging = HingeAveraging(this->Topology, isHeldTriangle, context.Part(0.0, 0.5));
     for (const double t : this->KeyLengths.GetParameters())
     {
       const Layouts layouts = LayOut(this->Topology, this->KeyLengths.Evaluate(t), context);

@@ -3,12 +3,12 @@
 
 #include "Algebra/ConstrainedSolver.h"
 #include "Differential/DualForest.h"
-#include "Morph/FrameMemory.h"
 #include "Differential/Hinges.h"
-#include "Morph/KeyInterpolation.h"
 #include "Differential/RotationAveraging.h"
-#include "Morph/SurfaceMorph.h"
 #include "Differential/TriangleStitching.h"
+#include "Morph/FrameMemory.h"
+#include "Morph/KeyInterpolation.h"
+#include "Morph/SurfaceMorph.h"
 
 #include <memory>
 #include <vector>
@@ -112,8 +112,7 @@ private:
     double t, const Matrices& transitions, Matrices& frames, const ExecutionContext& context);
   void Place(const Layouts& layouts, const Matrices& frames, Points& points) const;
   void Stitch(const Layouts& layouts, const Matrices& frames, Points& points) const;
-  void Polish(
-    const Eigen::VectorXd& lengths, Points& points, const ExecutionContext& context);
+  void Polish(const Eigen::VectorXd& lengths, Points& points, const ExecutionContext& context);
   SparseMatrix LengthEquations(
     const Eigen::VectorXd& lengths, const Points& points, Field& rightHandSide) const;
 

@@ -86,8 +86,8 @@ KeyInterpolation::KeyInterpolation(std::vector<double> parameters, Field values)
     }
     for (int k = 1; k + 1 < keys; ++k)
     {
-      const double parabola = (widths[k] * secants[k - 1] + widths[k - 1] * secants[k]) /
-        (widths[k - 1] + widths[k]);
+      const double parabola =
+        (widths[k] * secants[k - 1] + widths[k - 1] * secants[k]) / (widths[k - 1] + widths[k]);
       this->Slopes(row, k) = Limited(parabola, secants[k - 1], secants[k]);
     }
     this->Slopes(row, 0) = EndSlope(widths[0], secants[0], widths[1], secants[1]);

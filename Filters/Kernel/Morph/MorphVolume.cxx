@@ -73,9 +73,8 @@ std::string MorphVolume::Close(double t, Points& positions) const
       notClosed.Add(static_cast<long long>(c));
     }
   }
-  return notClosed.IsEmpty()
-    ? std::string()
-    : "The volume of " + notClosed.Describe("component", "components") + " at the parameter " +
-      std::to_string(t) + " could not be closed on those of the key frames.";
+  return notClosed.IsEmpty() ? std::string()
+                             : "The volume of " + notClosed.Describe("component", "components") +
+      " at the parameter " + std::to_string(t) + " could not be closed on those of the key frames.";
 }
 }

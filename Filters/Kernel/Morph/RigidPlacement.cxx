@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Morph/RigidPlacement.h"
 
-#include "Measure/Measures.h"
 #include "Algebra/Rotation.h"
+#include "Measure/Measures.h"
 
 #include <Eigen/SVD>
 
@@ -152,16 +152,15 @@ void RigidPlacement::Place(double t, Points& positions) const
   const Points own = WeightedCenters(mesh, positions, this->Weights);
   const auto rotationsTo = [&](int key)
   {
-    return BestRotations(mesh, positions, own, this->Keys.Positions[key], this->Centers[key],
-      this->Weights);
+    return BestRotations(
+      mesh, positions, own, this->Keys.Positions[key], this->Centers[key], this->Weights);
   };
   std::vector<Eigen::Matrix3d> rotations = rotationsTo(k);
   const std::vector<Eigen::Matrix3d> toAfter = rotationsTo(k + 1);
   for (std::size_t c = 0; c < rotations.size(); ++c)
   {
     const Eigen::Vector3d guess = this->Turns[k].row(static_cast<Eigen::Index>(c));
-    const Eigen::Vector3d turn =
-      VectorFromRotation(toAfter[c] * rotations[c].transpose(), guess);
+    const Eigen::Vector3d turn = VectorFromRotation(toAfter[c] * rotations[c].transpose(), guess);
     rotations[c] = RotationFromVector(part * turn) * rotations[c];
   }
   const Eigen::VectorXd centers = this->CenterPaths.Evaluate(t);

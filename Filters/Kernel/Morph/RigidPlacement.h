@@ -32,9 +32,9 @@ public:
 
 private:
   KeyFrames Keys;
-  Eigen::VectorXd Weights;       // #V, adding up to 1 over each component
-  std::vector<Points> Centers;   // per key frame, #components x 3
-  KeyInterpolation CenterPaths;  // 3 #components rows
-  std::vector<Points> Turns;     // per key frame but the last, to the next: #components x 3
+  Eigen::VectorXd Weights;      // #V, adding up to 1 over each component
+  std::vector<Points> Centers;  // per key frame, #components x 3
+  KeyInterpolation CenterPaths; // 3 #components rows
+  std::vector<Points> Turns;    // per key frame but the last, to the next: #components x 3
 };
 }

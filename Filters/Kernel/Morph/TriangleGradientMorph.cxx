@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Morph/TriangleGradientMorph.h"
 
-#include "Mesh/Geometry.h"
-#include "Differential/Laplacian.h"
 #include "Algebra/Rotation.h"
+#include "Differential/Laplacian.h"
+#include "Mesh/Geometry.h"
 
 #include <queue>
 #include <tuple>
@@ -37,8 +37,8 @@ Eigen::Matrix3d Basis(const Eigen::Ref<const Eigen::Matrix3d>& corners)
   basis.col(0) = corners.col(1) - corners.col(0);
   basis.col(1) = corners.col(2) - corners.col(0);
   const Eigen::Vector3d twiceArea = basis.col(0).cross(basis.col(1));
-  if (!HasArea(twiceArea.norm(),
-        LongestEdgeSquared(corners.col(0), corners.col(1), corners.col(2))))
+  if (!HasArea(
+        twiceArea.norm(), LongestEdgeSquared(corners.col(0), corners.col(1), corners.col(2))))
   {
     return Eigen::Matrix3d::Zero();
   }
@@ -178,9 +178,9 @@ Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
       if (!isDone[t])
       {
         const Eigen::Vector3d guess = vectors.row(from);
-        vectors.row(t) = (rotations.row(t).isZero(0.0)
-            ? guess
-            : VectorFromRotation(MatrixAt(rotations, t), guess)).transpose();
+        vectors.row(t) =
+          (rotations.row(t).isZero(0.0) ? guess : VectorFromRotation(MatrixAt(rotations, t), guess))
+            .transpose();
         take(t);
       }
     }
@@ -189,8 +189,7 @@ Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
 }
 }
 
-TriangleGradientMorph::TriangleGradientMorph(
-  const KeyFrames& keys, const ExecutionContext& context)
+TriangleGradientMorph::TriangleGradientMorph(const KeyFrames& keys, const ExecutionContext& context)
   : Mesh(keys.Mesh)
 {
   const TriangleMesh& mesh = *this->Mesh;

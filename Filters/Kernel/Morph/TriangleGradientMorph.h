@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Differential/TriangleStitching.h"
 #include "Morph/KeyInterpolation.h"
 #include "Morph/SurfaceMorph.h"
-#include "Differential/TriangleStitching.h"
 
 namespace cartan
 {
