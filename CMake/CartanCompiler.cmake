@@ -2,7 +2,7 @@
 
 get_property(is_multi_config GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
 if (NOT is_multi_config AND NOT CMAKE_BUILD_TYPE)
-  # Eigen without optimisation is fifty times slower: never by accident.
+  # Eigen without optimization is fifty times slower: never by accident.
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, RelWithDebInfo, Debug" FORCE)
 endif ()
 
@@ -26,7 +26,7 @@ if (CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   set(CARTAN_WARNING_FLAGS -Wall -Wextra -Wshadow)
 endif ()
 if (CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # False alarms inside Eigen, at some levels of optimisation.
+  # False alarms inside Eigen, at some levels of optimization.
   list(APPEND CARTAN_WARNING_FLAGS -Wno-maybe-uninitialized)
 endif ()
 

@@ -4,7 +4,7 @@ set(CARTAN_TEST_OUTPUT "${PROJECT_BINARY_DIR}/Testing/Output")
 set(CARTAN_BASELINE_DIR "${PROJECT_SOURCE_DIR}/Data/Baseline")
 file(MAKE_DIRECTORY "${CARTAN_TEST_OUTPUT}")
 
-# CGAL's example meshes are under various licences: they are taken from the
+# CGAL's example meshes are under various licenses: they are taken from the
 # package libcgal-demo and never become part of this repository.
 set(CARTAN_MESH_DIR "" CACHE PATH "CGAL's data/meshes; empty: unpacked from libcgal-demo")
 if (NOT CARTAN_MESH_DIR)

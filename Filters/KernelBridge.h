@@ -26,7 +26,7 @@ namespace cartan
 struct Surface
 {
   TriangleMesh Mesh;
-  /// Relative to Origin, the centre of the bounding box of the used points: a
+  /// Relative to Origin, the center of the bounding box of the used points: a
   /// surface far from the world's origin keeps its digits.
   Points Positions;
   Eigen::Vector3d Origin = Eigen::Vector3d::Zero();

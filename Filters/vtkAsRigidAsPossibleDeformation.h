@@ -4,7 +4,7 @@
  * @brief moves handles and keeps the rest as rigid as they allow
  *
  * Gives each point a rotation, and finds the positions and rotations for which
- * the neighbourhoods of all points change their shape least. This is not
+ * the neighborhoods of all points change their shape least. This is not
  * linear: a guess by a linear method is improved in turns of fitting rotations
  * and solving for positions, none of which raises the energy. Handles count by
  * where their points go, and how they turned is seen from that; with the default
@@ -15,7 +15,7 @@
  *   at all: creases where much is asked. Negative weights count as zero.
  * - SPOKES_AND_RIMS: all edges of the triangles at each point. Converges with
  *   finer triangles to an elastic membrane, keeps negative weights.
- * - SMOOTHED_ROTATIONS: SPOKES, and the rotations of neighbours should agree,
+ * - SMOOTHED_ROTATIONS: SPOKES, and the rotations of neighbors should agree,
  *   as in a thick shell: smooth bends. Bending says how much. Converges more
  *   slowly, the more so the finer the surface.
  *

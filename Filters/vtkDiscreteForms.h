@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkDiscreteForms
- * @brief describes a surface by its neighbourhoods, independent of its place
+ * @brief describes a surface by its neighborhoods, independent of its place
  *
  * Computes the first and second discrete form of a triangulated surface: each
  * edge that leaves a point is split into its projection on the tangent plane

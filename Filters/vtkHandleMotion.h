@@ -120,7 +120,7 @@ public:
   ///@{
   /**
    * BOX: the translation after scale and rotation, in length units. Scale and
-   * rotation keep the origin of the coordinates, not the centre of the box.
+   * rotation keep the origin of the coordinates, not the center of the box.
    * Default: (0, 0, 0).
    */
   vtkSetVector3Macro(BoxPosition, double);

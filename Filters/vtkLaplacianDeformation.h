@@ -4,7 +4,7 @@
  * @brief moves handles and finds the rotations of the surface from their places
  *
  * Laplacian editing: the surface whose differential coordinates (each point
- * relative to its neighbours) fit those of the input best, for given places of
+ * relative to its neighbors) fit those of the input best, for given places of
  * the handles. Only the places count: a handle that is translated turns its
  * surroundings, and how a handle was turned is seen from where its points went.
  *

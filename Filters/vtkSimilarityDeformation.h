@@ -4,7 +4,7 @@
  * @brief deforms by rotations and scales that follow from where handles go
  *
  * Each point gets a deformation gradient that is linear in the unknown
- * positions of its neighbours; the surface is solved for with gradients that
+ * positions of its neighbors; the surface is solved for with gradients that
  * vary as little as possible; shear is removed from them by a polar
  * decomposition; and the surface is put together from the rotations (and
  * scales) that are left. Unlike methods that spread the handles' transforms,
@@ -131,7 +131,7 @@ public:
   ///@}
 
   /**
-   * Of the last update: the points that lie in one plane with their neighbours
+   * Of the last update: the points that lie in one plane with their neighbors
    * and were displaced for the first solve.
    */
   vtkGetMacro(NumberOfDisplacedPoints, int);

@@ -132,7 +132,7 @@ public:
    * - RotationVectorArrayName: 3 components, axis times angle in radians; the
    *   length may exceed 2 pi.
    * - TransformArrayName: 9 components, a 3 x 3 matrix row by row that the
-   *   point's neighbourhood is to go through. Not together with rotation
+   *   point's neighborhood is to go through. Not together with rotation
    *   vectors.
    *
    * A handle all of whose points keep position and orientation is pinned.

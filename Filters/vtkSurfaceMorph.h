@@ -163,7 +163,7 @@ public:
 
   ///@{
   /**
-   * DISCRETE_FORMS: whether the turn from a point's frame to its neighbour's is
+   * DISCRETE_FORMS: whether the turn from a point's frame to its neighbor's is
    * interpolated as a rotation, or follows from the interpolated forms, as in the
    * 2005 paper, at somewhat larger errors in lengths. Default: ROTATIONS.
    */

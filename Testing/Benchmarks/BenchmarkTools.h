@@ -16,7 +16,7 @@ struct Mesh
   cartan::Triangles Triangles;
 };
 
-/// A scanned mesh by its name, centred on the origin.
+/// A scanned mesh by its name, centered on the origin.
 Mesh ReadMesh(const std::string& name);
 
 /// Each triangle into four, by the edges' midpoints.

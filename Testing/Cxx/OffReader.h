@@ -25,7 +25,7 @@ inline std::string MeshPath(const std::string& name)
   return CARTAN_MESH_DIR "/" + name + ".off";
 }
 
-/// Reads OFF, COFF, NOFF and CNOFF; normals, colours and comments are skipped.
+/// Reads OFF, COFF, NOFF and CNOFF; normals, colors and comments are skipped.
 /// Throws std::runtime_error when there is no such file or it makes no sense.
 inline Mesh Read(const std::string& path)
 {

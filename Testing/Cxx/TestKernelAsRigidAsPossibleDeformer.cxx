@@ -179,7 +179,7 @@ HandleTargets BendBar(double degrees, double length)
 {
   const double angle = degrees * shapes::Pi / 180.0;
   const double radius = length / angle;
-  // The arc's center is at y = radius; a turn about -x tilts +z towards +y.
+  // The arc's center is at y = radius; a turn about -x tilts +z toward +y.
   return Targets(Turn({ -angle, 0.0, 0.0 }, { 0.0, radius, 0.0 },
     RotationFromVector({ -angle, 0.0, 0.0 }) * Vector3d(0.0, 0.0, -length)));
 }

@@ -30,7 +30,7 @@ struct BentBar
     : Shape(shapes::Bar(6, 6, 36, { 1.0, 1.0, 6.0 }, true))
     , Angle(degrees * shapes::Pi / 180.0)
   {
-    // Bar() may be centred; here it stands on z = 0 around x = y = 1/2.
+    // Bar() may be centered; here it stands on z = 0 around x = y = 1/2.
     const Eigen::RowVector3d low = this->Shape.Positions.colwise().minCoeff();
     this->Shape.Positions.rowwise() -= low;
     this->Problem.Mesh = std::make_shared<const cartan::TriangleMesh>(
@@ -42,7 +42,7 @@ struct BentBar
       const double z = this->Shape.Positions(v, 2);
       this->Problem.Handle.push_back(z <= 1.0 + 1e-9 ? 2 : (z >= 5.0 - 1e-9 ? 1 : 0));
     }
-    // The centre line becomes an arc of length 4 towards +y.
+    // The center line becomes an arc of length 4 toward +y.
     const double radius = 4.0 / this->Angle;
     HandleMotion motion;
     motion.RotationVector = { -this->Angle, 0.0, 0.0 };

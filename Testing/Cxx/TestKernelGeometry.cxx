@@ -155,7 +155,7 @@ TEST(MixedAreas, OfSpecialTriangles)
   {
     EXPECT_NEAR(equilateral[v], h / 6.0, 1e-15);
   }
-  // The circumcentre of a right triangle is the middle of its long side.
+  // The circumcenter of a right triangle is the middle of its long side.
   const Eigen::VectorXd right = MixedAreas(Triangle({ 0, 0, 0 }, { 3, 0, 0 }, { 0, 4, 0 }));
   EXPECT_NEAR(right[0], 3.0, 1e-14);
   EXPECT_NEAR(right[1], 1.5, 1e-14);

@@ -109,7 +109,7 @@ TEST(HingeAngles, AreSignedAndTheAnglesOfSolids)
     0.5 * Pi + 1e-13);
 }
 
-TEST(HingeTransitions, GoFromTheFrameOfATriangleToItsNeighbours)
+TEST(HingeTransitions, GoFromTheFrameOfATriangleToItsNeighbors)
 {
   const Shape shape = shapes::Noisy(shapes::Icosphere(2), 0.05);
   const cartan::HingeTopology topology(MakeMesh(shape));

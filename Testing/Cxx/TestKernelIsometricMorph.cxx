@@ -58,7 +58,7 @@ Points Map(const Points& points, const std::function<Vector3d(const Vector3d&)>&
   return mapped;
 }
 
-/// Bends what is along z between `from` and `to` towards +x, with constant
+/// Bends what is along z between `from` and `to` toward +x, with constant
 /// curvature.
 Points Bent(const Points& points, double from, double to, double angle)
 {
@@ -68,10 +68,10 @@ Points Bent(const Points& points, double from, double to, double angle)
       const double radius = (to - from) / angle;
       const double z = std::clamp(p[2], from, to);
       const double a = (z - from) / radius;
-      const Vector3d centre(radius * (1.0 - std::cos(a)), 0.0, from + radius * std::sin(a));
+      const Vector3d center(radius * (1.0 - std::cos(a)), 0.0, from + radius * std::sin(a));
       const Vector3d across(std::cos(a), 0.0, -std::sin(a));
       const Vector3d along(std::sin(a), 0.0, std::cos(a));
-      return Vector3d(centre + p[0] * across + Vector3d(0.0, p[1], 0.0) + (p[2] - z) * along);
+      return Vector3d(center + p[0] * across + Vector3d(0.0, p[1], 0.0) + (p[2] - z) * along);
     });
 }
 

@@ -289,16 +289,16 @@ std::set<int> Neighborhood(const TriangleMesh& mesh, int v, int rings)
 Eigen::MatrixXd LiteralGradient(const TriangleMesh& mesh, const Points& rest, int v)
 {
   const int valence = mesh.Valence(v);
-  Eigen::MatrixXd centred = Eigen::MatrixXd::Zero(valence + 1, rest.rows());
-  centred(0, v) = 1.0;
+  Eigen::MatrixXd centered = Eigen::MatrixXd::Zero(valence + 1, rest.rows());
+  centered(0, v) = 1.0;
   for (int k = 0; k < valence; ++k)
   {
     const int w = mesh.Neighbor(mesh.RingBegin(v) + k);
-    centred(k + 1, w) += 1.0;
-    centred.col(w).array() -= 1.0 / valence;
+    centered(k + 1, w) += 1.0;
+    centered.col(w).array() -= 1.0 / valence;
   }
-  const Eigen::MatrixXd offsets = centred * rest;
-  return (offsets.transpose() * offsets).inverse() * offsets.transpose() * centred;
+  const Eigen::MatrixXd offsets = centered * rest;
+  return (offsets.transpose() * offsets).inverse() * offsets.transpose() * centered;
 }
 
 /// Eqs. 5 to 7, row by row, with rows scaled by h_i and weights of sum one.
@@ -854,7 +854,7 @@ TEST(SimilarityDeformer, WarnsOfMirroringAndFlattening)
   EXPECT_EQ(warning(Matrix3d::Identity()), "");
 }
 
-// Corners with two neighbours, borders, and flat parts that end in handles.
+// Corners with two neighbors, borders, and flat parts that end in handles.
 TEST(SimilarityDeformer, BendsAnOpenPlane)
 {
   const Shape plane = shapes::Plane(12, 1.0);

@@ -433,7 +433,7 @@ TEST(TriangleGradientMorph, BendsWithoutLossUpToThreeQuartersOfALap)
   }
 }
 
-TEST(TriangleGradientMorph, FillsTrianglesWithoutAreaFromTheirNeighbours)
+TEST(TriangleGradientMorph, FillsTrianglesWithoutAreaFromTheirNeighbors)
 {
   Shape bar = shapes::Bar(4, 4, 12, { 1, 1, 3 });
   // A triangle of this side collapses in the second key frame.

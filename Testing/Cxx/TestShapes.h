@@ -280,7 +280,7 @@ inline Shape Ellipsoid(int level, const Eigen::Vector3d& halfAxes)
   return shape;
 }
 
-/// A closed bar of lengths `size` with its bottom in the plane z = 0, centred
+/// A closed bar of lengths `size` with its bottom in the plane z = 0, centered
 /// about the z axis, of nx x ny x nz quads, each split in two. Corners and
 /// edges are shared, so the surface is one closed component. The quads'
 /// diagonals are parallel, or alternate like the fields of a chessboard: a bar

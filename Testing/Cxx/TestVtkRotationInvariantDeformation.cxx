@@ -150,7 +150,7 @@ TEST(RotationInvariantDeformation, MovesRigidlyWhenAllHandlesDo)
 
 TEST(RotationInvariantDeformation, WithoutMotionReturnsTheSameBits)
 {
-  // Coordinates that no shift by the centre and back would leave alone.
+  // Coordinates that no shift by the center and back would leave alone.
   for (const int precision : { VTK_FLOAT, VTK_DOUBLE })
   {
     Shape shape = shapes::RandomRigidMotion(3, 1234.5)(shapes::RealMesh("elephant"));

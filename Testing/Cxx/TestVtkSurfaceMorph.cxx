@@ -334,7 +334,7 @@ TEST(VtkSurfaceMorph, ClosesTheVolumeOnThatBetweenTheKeyFrames)
   const cartan::TriangleMesh mesh(fixture.Bar.NumberOfVertices(), fixture.Bar.Faces);
   const auto volume = [&](const Points& points)
   { return cartan::MeasureComponents(mesh, points)[0].Volume; };
-  // Monotone cubic through the volumes: between those of the neighbours.
+  // Monotone cubic through the volumes: between those of the neighbors.
   const double first = volume(PointsOf(fixture.Keys[0]));
   const double second = volume(PointsOf(fixture.Keys[1]));
   const double third = volume(PointsOf(fixture.Keys[2]));

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The armadillo bends at the waist; its colours show how far each frame turned.
+"""The armadillo bends at the waist; its colors show how far each frame turned.
 
 The picture shows that something sensible is drawn. That it is right, the numbers
 say that are checked before.

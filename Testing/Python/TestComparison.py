@@ -58,7 +58,7 @@ class Roughness(unittest.TestCase):
                  (0.6, -math.cos(angle), -math.sin(angle))], triangles)
             self.assertAlmostEqual(roughness(flat, folded), degrees, places=9)
 
-    def test_compares_each_pair_of_neighbours_once(self):
+    def test_compares_each_pair_of_neighbors_once(self):
         for surface in (shapes.cylinder(2, 9, 12)[0], cartan_testing.bar(2, 3, 4, 1, 1, 1)):
             triangles = triangles_of(surface)
             pairs = adjacent_triangles(triangles)

@@ -189,7 +189,7 @@ class Methods(unittest.TestCase):
                 numpy.testing.assert_allclose(array(deformation.GetOutput(), "ScaleFactor"), 1.7,
                                               atol=1e-9)
 
-    def test_refits_bring_similarity_towards_as_rigid_as_possible(self):
+    def test_refits_bring_similarity_toward_as_rigid_as_possible(self):
         bar = marked_bar()
         rigid = vtkAsRigidAsPossibleDeformation()
         rigid.SetInitialGuessToRestShape()

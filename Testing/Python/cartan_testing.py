@@ -49,7 +49,7 @@ def surface(points, triangles):
 def read_off(path):
     """The triangle mesh in an OFF file (a path, or the name of a scanned mesh).
 
-    Also reads COFF: colours and other values after the coordinates are skipped.
+    Also reads COFF: colors and other values after the coordinates are skipped.
     Faces with more than three corners become fans.
     """
     if not os.path.exists(path):

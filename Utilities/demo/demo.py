@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Marks, bends, colours and measures four scanned surfaces with the ParaView
+"""Marks, bends, colors and measures four scanned surfaces with the ParaView
 plugin. Run by Utilities/demo.sh in pvpython; the argument is the build folder."""
 import math
 import os
@@ -96,7 +96,7 @@ def time_motions(deformed):
 
 
 def nice(value):
-    """The value rounded to one or two digits, for the end of a colour bar."""
+    """The value rounded to one or two digits, for the end of a color bar."""
     digit = 10.0 ** math.floor(math.log10(value))
     return min((factor * digit for factor in (1, 1.5, 2, 3, 4, 5, 6, 8, 10)),
                key=lambda candidate: abs(candidate - value))
@@ -157,9 +157,9 @@ def draw(pose, marked, bent, measured, folder):
     """A layout of four panels, kept in the state, and its picture."""
     before, after = (WrapDataObject(servermanager.Fetch(s)) for s in (marked, measured))
     points = numpy.concatenate([numpy.asarray(surface.Points) for surface in (before, after)])
-    # The lowest 17 % of a panel belong to the colour bar, the highest 8 % to its title.
+    # The lowest 17 % of a panel belong to the color bar, the highest 8 % to its title.
     camera = camera_for(pose.view_from, pose.view_up, points, PANEL, 0.17, 0.08)
-    # The largest two percent would leave everything else without colour.
+    # The largest two percent would leave everything else without color.
     error = nice(numpy.percentile(abs(after.PointData["MeanCurvatureError"]), 98))
     change = nice(after.PointData["FrameChange"].max())
     layout = CreateLayout(pose.title)

@@ -24,7 +24,7 @@ from shapes import cartan_testing
 from tableone import mark_ends, mark_parts, marked_armadillo, points_of
 
 WIDTH, HEADING, LEGEND = 700, 70, 90
-CURVATURE = 2.0  # where colours end, in 1 / length
+CURVATURE = 2.0  # where colors end, in 1 / length
 X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 # How the volume is kept: title, VolumeCorrection, CloseVolume.
 CORRECTIONS = (("no correction", "None", False), ("neutral offset", "NeutralOffset", False),
@@ -117,7 +117,7 @@ def wound_bar():
 
 
 def compared_bar():
-    """Two methods, coloured by the change of mean curvature; then a part of each."""
+    """Two methods, colored by the change of mean curvature; then a part of each."""
     rest = mark_parts(*shapes.studded_bar(6, 24), 0.15, 0.85)
     place = points_of(rest)
     middle = (abs(place[:, 2] - 3) < 0.7) & (place[:, 1] < -0.45)

@@ -41,7 +41,7 @@ X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 
 @dataclass
 class Case:
-    """Two key frames, the height of a picture, where the camera is, the colours of
+    """Two key frames, the height of a picture, where the camera is, the colors of
     handles (none: two of the sides), and the methods that the sheet of all cases
     shows."""
     name: str
@@ -179,7 +179,7 @@ def measure(case, morph):
 
 
 def key_frame(surface, path):
-    """A reader of the surface, from a file, without what says more than colours."""
+    """A reader of the surface, from a file, without what says more than colors."""
     held = with_held_triangles(surface)
     bare = vtkPolyData()
     bare.CopyStructure(held)

@@ -16,7 +16,7 @@ from vtkmodules.vtkRenderingCore import (vtkActor, vtkColorTransferFunction, vtk
 from vtkmodules.vtkRenderingOpenGL2 import vtkRenderStepsPass, vtkSSAOPass
 import vtkmodules.vtkRenderingFreeType  # noqa: F401, registers what draws text
 
-# Free points in the colour of bone, pinned ones dark; then a colour per handle.
+# Free points in the color of bone, pinned ones dark; then a color per handle.
 FREE, PINNED = (0.88, 0.85, 0.79), (0.30, 0.33, 0.38)
 HANDLE_COLORS = [(0.90, 0.38, 0.22), (0.17, 0.49, 0.72), (0.93, 0.70, 0.13), (0.30, 0.62, 0.35),
                  (0.58, 0.40, 0.70), (0.10, 0.63, 0.65), (0.85, 0.45, 0.62)]
@@ -48,7 +48,7 @@ def camera_for(view_from, view_up, points, size, below, above):
 
 @dataclass
 class Panel:
-    """A surface with its captions, coloured by its handles or by another array."""
+    """A surface with its captions, colored by its handles or by another array."""
     title: str
     note: str
     surface: object
@@ -194,7 +194,7 @@ def heading(text, size):
 
 
 def legend(panel, title, size):
-    """What the colours of a panel mean: a bar from minus to plus its range."""
+    """What the colors of a panel mean: a bar from minus to plus its range."""
     bar = vtkScalarBarActor()
     bar.SetLookupTable(color_map(panel))
     bar.SetOrientationToHorizontal()

@@ -40,7 +40,7 @@ def trunk():
     its length, 0 to 1, at which each point is. 21,378 points."""
     length, rings, sides = 12.0, 300, 64
     part = numpy.linspace(0, 1, rings)
-    # Wrinkles grow closer towards the tip, like the thickness they are a part of.
+    # Wrinkles grow closer toward the tip, like the thickness they are a part of.
     radius = 1.05 - 0.78 * part**0.85
     phase = 2 * numpy.pi * 34 * part**0.9
     radius = radius * (1 + 0.045 * (numpy.abs(numpy.sin(phase / 2))**0.6 - 0.7))
@@ -73,7 +73,7 @@ def studded_bar(length, per_unit):
     points[:, :2] -= 0.5
     parts = points[:, 2] / length
     for axis in (0, 1):
-        # A dome per unit of length, those of neighbouring sides in turn.
+        # A dome per unit of length, those of neighboring sides in turn.
         shift = 0.5 * axis
         nearest = numpy.round(points[:, 2] - 0.5 - shift) + 0.5 + shift
         distance = numpy.hypot(points[:, 1 - axis], points[:, 2] - nearest)

@@ -138,7 +138,7 @@ void AsRigidAsPossibleDeformer::BuildCells()
     }
     return site[v];
   };
-  // Breadth first, so that a cell's neighbours are near it in memory: an order
+  // Breadth first, so that a cell's neighbors are near it in memory: an order
   // of vertices without that makes a step half as fast.
   std::vector<int> unknown(mesh.NumberOfVertices(), -1);
   for (int i = 0; i < this->System->NumberOfUnknowns(); ++i)
@@ -241,7 +241,7 @@ void AsRigidAsPossibleDeformer::BuildRims()
 
 void AsRigidAsPossibleDeformer::BuildColors()
 {
-  // Greedy: the smallest colour that no neighbour has.
+  // Greedy: the smallest color that no neighbor has.
   std::vector<int> colors(this->ActiveCount, -1);
   std::vector<char> isTaken;
   for (int cell = 0; cell < this->ActiveCount; ++cell)
@@ -321,8 +321,8 @@ void AsRigidAsPossibleDeformer::FitRotations(const ExecutionContext& context)
       });
     return;
   }
-  // Each fit sees its neighbours' rotations, so that none raises the energy;
-  // those of one colour see none of each other.
+  // Each fit sees its neighbors' rotations, so that none raises the energy;
+  // those of one color see none of each other.
   const double bending = this->Bending * this->FreeArea;
   for (const std::vector<int>& cells : this->Colors)
   {

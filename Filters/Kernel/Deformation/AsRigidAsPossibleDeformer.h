@@ -23,13 +23,13 @@ enum class InitialGuess
   ShapePreserving    ///< ShapePreservingDeformer, which knows laps
 };
 
-/// Deformation that leaves the neighbourhood of each vertex as rigid as the
+/// Deformation that leaves the neighborhood of each vertex as rigid as the
 /// handles let it. With rest positions p, the positions x and a rotation R_i
 /// per vertex are to minimize one of
 ///
 ///   Spokes:  E = sum_i sum_j w_ij |x_i - x_j - R_i (p_i - p_j)|^2
 ///
-/// over the neighbours j of i (Sorkine and Alexa, As-Rigid-As-Possible Surface
+/// over the neighbors j of i (Sorkine and Alexa, As-Rigid-As-Possible Surface
 /// Modeling, 2007, Eq. 7);
 ///
 ///   SpokesAndRims:  E = 2/3 sum_i sum_(j,k) c_jk |x_j - x_k - R_i (p_j - p_k)|^2
@@ -63,7 +63,7 @@ enum class InitialGuess
 /// Acceleration for Geometry Optimization and Physics Simulation, 2018) where
 /// that lowers the energy by more than the tolerance, so it still never rises.
 ///
-/// Held vertices whose neighbours are all held get the rotation that fits their
+/// Held vertices whose neighbors are all held get the rotation that fits their
 /// ring, and keep it. With ConstrainPositions off, moving handles are held in
 /// rotation instead of in position.
 class AsRigidAsPossibleDeformer : public SurfaceDeformer
@@ -149,7 +149,7 @@ private:
 
   // Sites are numbered so that the unknowns come first; then the held vertices
   // next to them, which are the last cells to be fitted in each step; then the
-  // other cells, those of moving handles and next to them; then the neighbours
+  // other cells, those of moving handles and next to them; then the neighbors
   // of cells, which stay at rest.
   int ActiveCount = 0;
   int CellCount = 0;
@@ -160,7 +160,7 @@ private:
   std::vector<int> SpokeOffsets;   // #cells + 1
   std::vector<Spoke> Spokes;
   std::vector<Rim> Rims; // as Spokes; empty without rims
-  /// Active cells in groups of which no two are neighbours; empty unless
+  /// Active cells in groups of which no two are neighbors; empty unless
   /// rotations are coupled.
   std::vector<std::vector<int>> Colors;
   std::vector<int> MovingHandles; // #V, index in Moving or -1

@@ -11,7 +11,7 @@ namespace cartan
 /// The curve are the edges between vertices of one handle that do not have the
 /// handle on both sides: the handle itself where it is a line, its border where
 /// it is a region, whose inner vertices have no share. A vertex without a
-/// neighbour in its handle counts with the mean length of its edges. Where a
+/// neighbor in its handle counts with the mean length of its edges. Where a
 /// handle has no curve, as it is a whole closed component, all its vertices have
 /// equal shares.
 ///

@@ -100,7 +100,7 @@ public:
   Field HarmonicFields() const;
 
   /// Solves L x = b: `rightHandSide` has a row per unknown and already contains
-  /// what held neighbours and soft targets add. Returns #unknowns x k.
+  /// what held neighbors and soft targets add. Returns #unknowns x k.
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& rightHandSide) const
   {
     return this->Solver.SolveFree(rightHandSide);

@@ -14,7 +14,7 @@ namespace cartan
 struct HandleProblem
 {
   std::shared_ptr<const TriangleMesh> Mesh;
-  std::shared_ptr<const Points> Rest; ///< #V x 3, best centred on the origin
+  std::shared_ptr<const Points> Rest; ///< #V x 3, best centered on the origin
   std::vector<int> Handle;            ///< #V, the handle of each vertex; 0 is free
   /// The handles that may move, in increasing order. The others keep their
   /// place: they are pinned.
@@ -62,7 +62,7 @@ struct HandleTargets
 struct DeformedSurface
 {
   Points Positions; ///< #V x 3
-  /// The linear map that each vertex's neighbourhood went through: #V x 9,
+  /// The linear map that each vertex's neighborhood went through: #V x 9,
   /// filled on request. The identity where nothing moves.
   Matrices Transforms;
   /// The factors of the frames by a volume correction: #V, 1 where there is none.

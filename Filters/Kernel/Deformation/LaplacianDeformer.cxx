@@ -100,7 +100,7 @@ void LaplacianDeformer::PrepareImplicit(const ExecutionContext& context)
     const int v = this->Rows[row];
     const std::vector<int> ring = ClosedRing(mesh, v);
     // The best (s, h) and translation for given positions y of the ring:
-    // (s I + [h]x) (x_j - mean x) = y_j - mean y. Centred on the mean, the
+    // (s I + [h]x) (x_j - mean x) = y_j - mean y. Centered on the mean, the
     // translation drops out.
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const int w : ring)

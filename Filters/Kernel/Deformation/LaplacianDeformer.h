@@ -62,7 +62,7 @@ private:
   int Rounds = 5;
   Points Differential; ///< #V x 3, of the rest
   /// The vertices whose differential coordinates the unknowns change: these and
-  /// their neighbours.
+  /// their neighbors.
   std::vector<int> Rows;
   std::vector<std::vector<int>> TwoRings; ///< of Rows, the vertex included
   Matrices Transforms;                    ///< #V x 9

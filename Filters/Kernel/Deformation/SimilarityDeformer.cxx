@@ -108,7 +108,7 @@ SimilarityDeformer::SimilarityDeformer(HandleProblem problem, const Options& opt
       weightSums[v] += std::abs(this->EdgeWeights[d]);
     }
   }
-  // A vertex in one place with all its neighbours has no scale of its own.
+  // A vertex in one place with all its neighbors has no scale of its own.
   this->EdgeLengths = this->EdgeLengths.cwiseMax(1e-6 * this->EdgeLengths.mean());
   this->RowScales.setZero(mesh.NumberOfVertices());
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
@@ -588,7 +588,7 @@ void SimilarityDeformer::SolveLeastSquares(Points& positions, const ExecutionCon
   const TriangleMesh& mesh = *this->Problem.Mesh;
   const RingGradients& gradients = *this->Gradients;
   const Points& rest = *this->Problem.Rest;
-  // s_i T_i delta_i; those of held neighbours belong to the sum too, because
+  // s_i T_i delta_i; those of held neighbors belong to the sum too, because
   // their D sees unknown vertices.
   Points details(static_cast<Eigen::Index>(gradients.ActiveVertices().size()), 3);
   context.For(static_cast<int>(details.rows()),

@@ -44,7 +44,7 @@ Eigen::VectorXd EdgeLengths(
   const HingeTopology& topology, const Points& points, const ExecutionContext& context = {});
 
 /// Unit normals of the triangles: #T x 3. A triangle without area (see HasArea)
-/// has none of its own; it takes that of a neighbour, made orthogonal to its
+/// has none of its own; it takes that of a neighbor, made orthogonal to its
 /// longest edge, and sets its entry in `isDegenerate` (#T), if that is asked for.
 Points HingeNormals(
   const HingeTopology& topology, const Points& points, std::vector<char>* isDegenerate = nullptr);

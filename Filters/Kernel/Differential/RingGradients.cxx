@@ -150,9 +150,9 @@ void RingGradients::BuildRows(
   const TriangleMesh& mesh, const GradientConstraints& constraints, const ExecutionContext& context)
 {
   // With u_k = v_k - v_0 and the sum over k of V~_i V_i^T written out, a
-  // neighbour k has (V_i V_i^T)^-1 (u_k - u_i / |N|) and i itself
-  // (V_i V_i^T)^-1 u_i, because the u_k of the neighbours sum to zero and the
-  // deformed mean is moved by every neighbour.
+  // neighbor k has (V_i V_i^T)^-1 (u_k - u_i / |N|) and i itself
+  // (V_i V_i^T)^-1 u_i, because the u_k of the neighbors sum to zero and the
+  // deformed mean is moved by every neighbor.
   std::vector<Row3> rows(this->Active.size());
   context.For(static_cast<int>(this->Active.size()),
     [&](int begin, int end)
@@ -195,7 +195,7 @@ void RingGradients::BuildRows(
       borrowing.push_back(v);
     }
   }
-  // In rounds, so that the mean is over neighbours that did not borrow in the
+  // In rounds, so that the mean is over neighbors that did not borrow in the
   // same round: the result must not depend on the order of the vertices.
   while (!borrowing.empty())
   {
@@ -256,7 +256,7 @@ void RingGradients::BuildRows(
       }
       throw Error(ErrorCode::BadInput,
         "No deformation gradient is defined at " + lost.Describe("point", "points") +
-          ": their triangles have no area or too few neighbours. Repair them, mark them as part "
+          ": their triangles have no area or too few neighbors. Repair them, mark them as part "
           "of a handle, or hold the handles' transforms.");
     }
     for (const auto& [v, row] : borrowed)

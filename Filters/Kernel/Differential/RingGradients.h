@@ -142,17 +142,17 @@ struct GradientConstraints
 
 /// The deformation gradients of Fu, Au, Tai, Effective Derivation of Similarity
 /// Transformations for Implicit Laplacian Mesh Editing, 2007, sections 3.1 and
-/// 3.3. With v_0 the mean of the neighbours of i, V_i = [v_k - v_0] and
-/// V~_i = [v~_k - v~_0], k = i and its neighbours,
+/// 3.3. With v_0 the mean of the neighbors of i, V_i = [v_k - v_0] and
+/// V~_i = [v~_k - v~_0], k = i and its neighbors,
 ///
 ///   M_i = V~_i V_i^T (V_i V_i^T)^-1                                   (Eq. 4)
 ///
 /// is linear in the deformed positions v~. Where V_i V_i^T is singular, because
-/// i and its neighbours are coplanar, i is displaced along its normal (Eq. 8).
-/// That is done one vertex after the other, each tested with its neighbours
+/// i and its neighbors are coplanar, i is displaced along its normal (Eq. 8).
+/// That is done one vertex after the other, each tested with its neighbors
 /// where they are by then: displaced all at once, a flat part would stay flat.
-/// Vertices of handles stay; they, corners with two neighbours, and whatever
-/// stays singular, take the mean of the neighbours' gradients.
+/// Vertices of handles stay; they, corners with two neighbors, and whatever
+/// stays singular, take the mean of the neighbors' gradients.
 ///
 /// Gradients are rows over *columns*, numbered
 ///
@@ -194,11 +194,11 @@ public:
   const std::vector<int>& GivenVertices() const { return this->Givens; }
 
   /// The vertices whose one-ring has an unknown vertex: unknowns, in the order
-  /// of their columns, then held neighbours.
+  /// of their columns, then held neighbors.
   const std::vector<int>& ActiveVertices() const { return this->Active; }
 
   /// Whether the gradient of a vertex is made from positions (or borrowed from
-  /// neighbours) and changes with the unknowns.
+  /// neighbors) and changes with the unknowns.
   bool IsVariable(int vertex) const
   {
     return this->RowOfVertex[vertex] >= 0 && !this->IsGivenRow[this->RowOfVertex[vertex]];

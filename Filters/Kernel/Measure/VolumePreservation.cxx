@@ -71,7 +71,7 @@ void FillDepths(const TriangleMesh& mesh, const SparseMatrix& laplacian, VolumeM
   model.LocalDepth = depth.col(0);
 }
 
-/// The middles of the body, smoothed where their neighbours belong together.
+/// The middles of the body, smoothed where their neighbors belong together.
 Points SmoothedCenters(const TriangleMesh& mesh, const Points& points,
   const SparseMatrix& laplacian, const Points& centers, const VolumeModel& model)
 {

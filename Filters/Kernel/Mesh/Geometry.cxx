@@ -9,7 +9,7 @@ namespace
 {
 /// Below this part of the summed sizes, what is left of a sum of vectors is
 /// rounding and has no direction.
-constexpr double Cancelled = 1e-12;
+constexpr double Canceled = 1e-12;
 }
 
 Points TriangleAreaVectors(
@@ -51,7 +51,7 @@ Points VertexNormals(
           }
         }
         const double length = sum.norm();
-        if (length > Cancelled * size)
+        if (length > Canceled * size)
         {
           normals.row(v) = sum / length;
         }

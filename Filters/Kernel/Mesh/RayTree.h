@@ -15,7 +15,7 @@ struct RayHit
 };
 
 /// Finds what a ray first meets of a surface: a tree of boxes over its
-/// triangles, each half of those above it. Where neighbours share an edge or a
+/// triangles, each half of those above it. Where neighbors share an edge or a
 /// vertex, no ray slips between them. Does not change once it is made, and may
 /// be used from several threads.
 class RayTree
@@ -27,7 +27,7 @@ public:
   /// The triangle that the ray from a point in a unit direction meets first, on
   /// whichever side, its start included; of several that are equally far the
   /// one of the smallest id. Triangles without area are not met; those that are
-  /// seen edge-on need not be, but their neighbours are. The start is at most
+  /// seen edge-on need not be, but their neighbors are. The start is at most
   /// some hundred bounding diagonals away. O(log #T) for most surfaces.
   RayHit FirstHit(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const;
 

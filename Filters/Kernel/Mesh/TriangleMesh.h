@@ -37,7 +37,7 @@ struct MeshReport
 /// directed edges RingBegin(v) ... RingEnd(v) - 1, counter-clockwise seen from
 /// outside. The ring of a boundary vertex starts at the boundary edge that has
 /// a triangle on its left and ends at the one that has none; the ring of an
-/// interior vertex starts at an arbitrary neighbour that depends on the
+/// interior vertex starts at an arbitrary neighbor that depends on the
 /// triangles' order only.
 class TriangleMesh
 {

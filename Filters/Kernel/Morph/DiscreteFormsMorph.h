@@ -12,7 +12,7 @@ namespace cartan
 /// Surfaces between key frames by their discrete forms (Lipman et al., Linear
 /// Rotation-invariant Coordinates for Meshes, 2005, section 4.1): the projected
 /// lengths, angles and heights of all one-rings are interpolated, frames found
-/// that fit what follows for neighbouring frames, and positions that fit the
+/// that fit what follows for neighboring frames, and positions that fit the
 /// one-rings in these frames. Bends and twists of any number of laps come out as
 /// such, because each one-ring turns a little only against the next.
 ///

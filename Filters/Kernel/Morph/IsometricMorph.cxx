@@ -111,7 +111,7 @@ IsometricMorph::IsometricMorph(
   this->Interpolate(keys.Positions, keys.Parameters, context.Part(0.0, 0.4));
 
   // The hinges that turn least come first, of equal ones the shortest, across
-  // which neighbours are pulled apart the least.
+  // which neighbors are pulled apart the least.
   const Field& angles = this->KeyAngles.GetValues();
   const Field& lengths = this->KeyLengths.GetValues();
   const Eigen::Index last = angles.cols() - 1;

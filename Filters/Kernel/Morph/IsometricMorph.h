@@ -70,7 +70,7 @@ class IsometricMorph : public SurfaceMorph
 {
 public:
   /// Triangles without area are no obstacle: in a key frame where they are, they
-  /// face as a neighbour does.
+  /// face as a neighbor does.
   ///
   /// Throws Error(BadInput) for what KeyInterpolation refuses, key frames of
   /// another size, coordinates that are not finite, and edges of no length, which

@@ -23,7 +23,7 @@ KeyPlace PlaceBetweenKeys(double t, const std::vector<double>& parameters);
 /// keys, monotone piecewise cubic with a continuous derivative through more
 /// (Fritsch and Carlson, Monotone Piecewise Cubic Interpolation, 1980), so that
 /// nothing overshoots between two keys. The slope at a key is that of the
-/// parabola through it and its neighbours, limited to three times the smaller of
+/// parabola through it and its neighbors, limited to three times the smaller of
 /// the two secants beside it, and zero where those differ in sign. Outside of the
 /// keys it goes on straight with the slope of the first or last one.
 ///

@@ -114,9 +114,9 @@ Matrices TriangleFrames(const TriangleMesh& mesh, const Matrices& corners)
 }
 
 /// Rotation vectors that mean `rotations` (#T x 9) and are near to those of
-/// neighbours: #T x 3. Spreads from the least turned triangle of each component
-/// over the most alike neighbours first. Triangles without a rotation take their
-/// neighbour's.
+/// neighbors: #T x 3. Spreads from the least turned triangle of each component
+/// over the most alike neighbors first. Triangles without a rotation take their
+/// neighbor's.
 Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
 {
   const int numberOfTriangles = mesh.NumberOfTriangles();
@@ -149,7 +149,7 @@ Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
     }
     return neighbors;
   };
-  // How far apart, the triangle, the neighbour it takes its branch from.
+  // How far apart, the triangle, the neighbor it takes its branch from.
   using Step = std::tuple<double, int, int>;
   std::priority_queue<Step, std::vector<Step>, std::greater<>> queue;
   std::vector<char> isDone(numberOfTriangles, 0);

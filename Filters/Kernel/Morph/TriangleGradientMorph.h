@@ -14,7 +14,7 @@ namespace cartan
 /// stretched triangle are interpolated, and the triangles stitched together.
 ///
 /// Of the many vectors that mean one rotation each triangle takes the one nearest
-/// to that of its neighbour, the most alike neighbours first. That is consistent
+/// to that of its neighbor, the most alike neighbors first. That is consistent
 /// where no part of the surface turns by nearly a whole lap against the mean of
 /// all; there every axis is as good as any other, and the surface tears or
 /// creases. DiscreteFormsMorph has no such limit.
