@@ -1,7 +1,7 @@
 # The parts of the stand-alone project, one function each.
 
 # The folders in the install tree, and in the same places in the build tree.
-set(CARTAN_CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/Cartan")
+set(CARTAN_CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/vtkCartan")
 if (VTK_WRAP_PYTHON)
   vtk_module_python_default_destination(CARTAN_PYTHON_DESTINATION)
 endif ()
@@ -12,7 +12,7 @@ endif ()
 function (cartan_build_module)
   vtk_module_scan(
     MODULE_FILES      "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module"
-    REQUEST_MODULES   VTK::Cartan
+    REQUEST_MODULES   vtkCartan::vtkCartan
     PROVIDES_MODULES  modules
     REQUIRES_MODULES  required_modules # imported by find_package(VTK)
     HIDE_MODULES_FROM_CACHE ON)
@@ -20,32 +20,32 @@ function (cartan_build_module)
   set(CMAKE_BINARY_DIR "${CMAKE_BINARY_DIR}/Module")
   vtk_module_build(
     MODULES             ${modules}
-    PACKAGE             Cartan
-    INSTALL_EXPORT      Cartan
-    HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/cartan"
+    PACKAGE             vtkCartan
+    INSTALL_EXPORT      vtkCartan
+    HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/vtkCartan"
     CMAKE_DESTINATION   "${CARTAN_CMAKE_DESTINATION}"
     TEST_DIRECTORY_NAME NONE # the tests come last, when the plugin is there
     VERSION             "${PROJECT_VERSION}"
     SOVERSION           "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
 endfunction ()
 
-# The Python package `cartan`.
+# The Python package `vtkcartan`.
 function (cartan_wrap_python)
   vtk_module_wrap_python(
-    MODULES             VTK::Cartan
-    TARGET              CartanPythonWrapped
-    PYTHON_PACKAGE      cartan
+    MODULES             vtkCartan::vtkCartan
+    TARGET              vtkCartanPythonWrapped
+    PYTHON_PACKAGE      vtkcartan
     MODULE_DESTINATION  "${CARTAN_PYTHON_DESTINATION}"
     LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     CMAKE_DESTINATION   "${CARTAN_CMAKE_DESTINATION}"
     INSTALL_HEADERS     OFF)
 
-  # The wrapped classes are in the extension module cartan.Cartan; the package
+  # The wrapped classes are in the extension module vtkcartan.vtkCartan; the package
   # hands them on.
-  set(init "${CMAKE_BINARY_DIR}/${CARTAN_PYTHON_DESTINATION}/cartan/__init__.py")
+  set(init "${CMAKE_BINARY_DIR}/${CARTAN_PYTHON_DESTINATION}/vtkcartan/__init__.py")
   file(CONFIGURE OUTPUT "${init}" CONTENT
-    "\"\"\"Surfaces described, edited and measured by differential quantities.\"\"\"\nfrom .Cartan import *\n")
-  install(FILES "${init}" DESTINATION "${CARTAN_PYTHON_DESTINATION}/cartan" COMPONENT python)
+    "\"\"\"Surfaces described, edited and measured by differential quantities.\"\"\"\nfrom .vtkCartan import *\n")
+  install(FILES "${init}" DESTINATION "${CARTAN_PYTHON_DESTINATION}/vtkcartan" COMPONENT python)
 endfunction ()
 
 function (cartan_build_plugin)
@@ -61,20 +61,20 @@ function (cartan_build_plugin)
     LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}")
 endfunction ()
 
-# What find_package(Cartan) reads.
+# What find_package(vtkCartan) reads.
 function (cartan_install_package)
   include(CMakePackageConfigHelpers)
   configure_package_config_file(
-    "${CMAKE_CURRENT_SOURCE_DIR}/CMake/cartan-config.cmake.in"
-    "${CMAKE_CURRENT_BINARY_DIR}/CMake/cartan-config.cmake"
+    "${CMAKE_CURRENT_SOURCE_DIR}/CMake/vtkCartan-config.cmake.in"
+    "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartan-config.cmake"
     INSTALL_DESTINATION "${CARTAN_CMAKE_DESTINATION}")
   write_basic_package_version_file(
-    "${CMAKE_CURRENT_BINARY_DIR}/CMake/cartan-config-version.cmake"
+    "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartan-config-version.cmake"
     COMPATIBILITY SameMinorVersion)
   install(
     FILES
-      "${CMAKE_CURRENT_BINARY_DIR}/CMake/cartan-config.cmake"
-      "${CMAKE_CURRENT_BINARY_DIR}/CMake/cartan-config-version.cmake"
+      "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartan-config.cmake"
+      "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartan-config-version.cmake"
     DESTINATION "${CARTAN_CMAKE_DESTINATION}"
     COMPONENT   development)
 endfunction ()

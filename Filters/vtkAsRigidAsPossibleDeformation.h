@@ -46,7 +46,7 @@
 
 #include "vtkSurfaceDeformation.h"
 
-class CARTAN_EXPORT vtkAsRigidAsPossibleDeformation : public vtkSurfaceDeformation
+class VTKCARTAN_EXPORT vtkAsRigidAsPossibleDeformation : public vtkSurfaceDeformation
 {
 public:
   static vtkAsRigidAsPossibleDeformation* New();

@@ -54,13 +54,13 @@
 #ifndef vtkCurvatureError_h
 #define vtkCurvatureError_h
 
-#include "CartanModule.h" // For the export macro
+#include "vtkCartanModule.h" // For the export macro
 
 #include "vtkPolyDataAlgorithm.h"
 
 #include <limits> // For the results before Update
 
-class CARTAN_EXPORT vtkCurvatureError : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkCurvatureError : public vtkPolyDataAlgorithm
 {
 public:
   static vtkCurvatureError* New();

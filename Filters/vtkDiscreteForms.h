@@ -43,13 +43,13 @@
 #ifndef vtkDiscreteForms_h
 #define vtkDiscreteForms_h
 
-#include "CartanModule.h" // For the export macro
+#include "vtkCartanModule.h" // For the export macro
 
 #include "vtkPolyDataAlgorithm.h"
 
 class vtkTable;
 
-class CARTAN_EXPORT vtkDiscreteForms : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkDiscreteForms : public vtkPolyDataAlgorithm
 {
 public:
   static vtkDiscreteForms* New();

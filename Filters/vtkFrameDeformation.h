@@ -34,7 +34,7 @@
 
 #include "vtkSurfaceDeformation.h"
 
-class CARTAN_EXPORT vtkFrameDeformation : public vtkSurfaceDeformation
+class VTKCARTAN_EXPORT vtkFrameDeformation : public vtkSurfaceDeformation
 {
 public:
   vtkTypeMacro(vtkFrameDeformation, vtkSurfaceDeformation);

@@ -40,7 +40,7 @@
 #ifndef vtkFrameReconstruction_h
 #define vtkFrameReconstruction_h
 
-#include "CartanModule.h" // For the export macro
+#include "vtkCartanModule.h" // For the export macro
 
 #include "vtkPolyDataAlgorithm.h"
 
@@ -48,7 +48,7 @@
 
 class vtkTable;
 
-class CARTAN_EXPORT vtkFrameReconstruction : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkFrameReconstruction : public vtkPolyDataAlgorithm
 {
 public:
   static vtkFrameReconstruction* New();

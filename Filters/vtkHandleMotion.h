@@ -33,7 +33,7 @@
 #ifndef vtkHandleMotion_h
 #define vtkHandleMotion_h
 
-#include "CartanModule.h" // For the export macro
+#include "vtkCartanModule.h" // For the export macro
 
 #include "vtkObject.h"
 #include "vtkSmartPointer.h" // For the matrix
@@ -42,7 +42,7 @@
 
 class vtkMatrix4x4;
 
-class CARTAN_EXPORT vtkHandleMotion : public vtkObject
+class VTKCARTAN_EXPORT vtkHandleMotion : public vtkObject
 {
 public:
   static vtkHandleMotion* New();

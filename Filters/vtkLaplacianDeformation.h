@@ -36,7 +36,7 @@
 
 #include "vtkSurfaceDeformation.h"
 
-class CARTAN_EXPORT vtkLaplacianDeformation : public vtkSurfaceDeformation
+class VTKCARTAN_EXPORT vtkLaplacianDeformation : public vtkSurfaceDeformation
 {
 public:
   static vtkLaplacianDeformation* New();

@@ -36,7 +36,7 @@
 #ifndef vtkMarkHandle_h
 #define vtkMarkHandle_h
 
-#include "CartanModule.h" // For the export macro
+#include "vtkCartanModule.h" // For the export macro
 
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSmartPointer.h" // For the held objects
@@ -47,7 +47,7 @@ class vtkExtractSelection;
 class vtkImplicitFunction;
 class vtkSelection;
 
-class CARTAN_EXPORT vtkMarkHandle : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkMarkHandle : public vtkPolyDataAlgorithm
 {
 public:
   static vtkMarkHandle* New();

@@ -27,7 +27,7 @@
 
 #include "vtkSurfaceDeformation.h"
 
-class CARTAN_EXPORT vtkMultiresolutionDeformation : public vtkSurfaceDeformation
+class VTKCARTAN_EXPORT vtkMultiresolutionDeformation : public vtkSurfaceDeformation
 {
 public:
   static vtkMultiresolutionDeformation* New();

@@ -31,7 +31,7 @@
 
 #include "vtkFrameDeformation.h"
 
-class CARTAN_EXPORT vtkPoissonDeformation : public vtkFrameDeformation
+class VTKCARTAN_EXPORT vtkPoissonDeformation : public vtkFrameDeformation
 {
 public:
   static vtkPoissonDeformation* New();

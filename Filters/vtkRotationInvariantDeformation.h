@@ -32,7 +32,7 @@
 
 #include "vtkFrameDeformation.h"
 
-class CARTAN_EXPORT vtkRotationInvariantDeformation : public vtkFrameDeformation
+class VTKCARTAN_EXPORT vtkRotationInvariantDeformation : public vtkFrameDeformation
 {
 public:
   static vtkRotationInvariantDeformation* New();

@@ -35,7 +35,7 @@
 
 #include "vtkFrameDeformation.h"
 
-class CARTAN_EXPORT vtkShapePreservingDeformation : public vtkFrameDeformation
+class VTKCARTAN_EXPORT vtkShapePreservingDeformation : public vtkFrameDeformation
 {
 public:
   static vtkShapePreservingDeformation* New();

@@ -43,7 +43,7 @@
 
 #include "vtkSurfaceDeformation.h"
 
-class CARTAN_EXPORT vtkSimilarityDeformation : public vtkSurfaceDeformation
+class VTKCARTAN_EXPORT vtkSimilarityDeformation : public vtkSurfaceDeformation
 {
 public:
   static vtkSimilarityDeformation* New();

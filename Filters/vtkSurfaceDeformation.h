@@ -35,7 +35,7 @@
 #ifndef vtkSurfaceDeformation_h
 #define vtkSurfaceDeformation_h
 
-#include "CartanModule.h" // For the export macro
+#include "vtkCartanModule.h" // For the export macro
 
 #include "vtkPolyDataAlgorithm.h"
 
@@ -54,7 +54,7 @@ struct DeformedSurface;
 struct HandleProblem;
 }
 
-class CARTAN_EXPORT vtkSurfaceDeformation : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkSurfaceDeformation : public vtkPolyDataAlgorithm
 {
 public:
   vtkTypeMacro(vtkSurfaceDeformation, vtkPolyDataAlgorithm);

@@ -40,7 +40,7 @@
 #ifndef vtkSurfaceMorph_h
 #define vtkSurfaceMorph_h
 
-#include "CartanModule.h" // For the export macro
+#include "vtkCartanModule.h" // For the export macro
 
 #include "vtkPolyDataAlgorithm.h"
 
@@ -48,7 +48,7 @@
 #include <string>
 #include <vector>
 
-class CARTAN_EXPORT vtkSurfaceMorph : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkSurfaceMorph : public vtkPolyDataAlgorithm
 {
 public:
   static vtkSurfaceMorph* New();

@@ -65,7 +65,7 @@
 #ifndef vtkVolumeChange_h
 #define vtkVolumeChange_h
 
-#include "CartanModule.h" // For the export macro
+#include "vtkCartanModule.h" // For the export macro
 
 #include "vtkPolyDataAlgorithm.h"
 
@@ -74,7 +74,7 @@
 
 class vtkTable;
 
-class CARTAN_EXPORT vtkVolumeChange : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkVolumeChange : public vtkPolyDataAlgorithm
 {
 public:
   static vtkVolumeChange* New();

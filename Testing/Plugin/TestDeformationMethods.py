@@ -1,7 +1,7 @@
 """The deformation methods beside the frame-based ones, through their proxies."""
 import math
 
-import cartan
+import vtkcartan
 from paraview import simple
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 
@@ -59,7 +59,7 @@ SHIFT = [0.5, -1.0, 0.25]
 for name, (choice, values) in CHOICES.items():
     proxy = getattr(simple, name)(Input=marked)
     algorithm = proxy.GetClientSideObject()
-    check(isinstance(algorithm, getattr(cartan, "vtk" + name)), name + " makes another class")
+    check(isinstance(algorithm, getattr(vtkcartan, "vtk" + name)), name + " makes another class")
     bent = []
     for i, value in enumerate(values):
         where = "%s, %s %s" % (name, choice, value)

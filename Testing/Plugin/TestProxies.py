@@ -1,5 +1,5 @@
 """Every proxy can be made, is documented, and starts with the class's own defaults."""
-import cartan
+import vtkcartan
 from paraview import servermanager, simple
 
 from plugin_testing import check, load_plugin
@@ -128,14 +128,14 @@ for name in sorted(names):
     algorithm = proxy.GetClientSideObject()
     check(algorithm.GetClassName() == "vtk" + name, name + " makes another class")
     check_documented(proxy)
-    check_defaults(proxy, getattr(cartan, "vtk" + name)())
+    check_defaults(proxy, getattr(vtkcartan, "vtk" + name)())
     check_settable(proxy)
     if proxy.GetProperty("Motion"):
         check(proxy.Motion.SMProxy.GetXMLName() == "Axis and Angle", "the default motion")
         for kind in MOTIONS:
             proxy.Motion = kind
             check_documented(proxy.Motion)
-            check_defaults(proxy.Motion, cartan.vtkHandleMotion())
+            check_defaults(proxy.Motion, vtkcartan.vtkHandleMotion())
             check_settable(proxy.Motion)
         proxy.Motion = "None"
         check(algorithm.GetActiveMotion() is None, "no motion")

@@ -9,7 +9,7 @@ import os
 import sys
 
 import numpy
-from cartan import vtkHandleMotion, vtkRotationInvariantDeformation, vtkVolumeChange
+from vtkcartan import vtkHandleMotion, vtkRotationInvariantDeformation, vtkVolumeChange
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals

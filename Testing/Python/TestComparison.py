@@ -6,7 +6,7 @@ import sys
 import unittest
 
 import numpy
-from cartan import vtkHandleMotion
+from vtkcartan import vtkHandleMotion
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 

@@ -4,7 +4,7 @@ import math
 import unittest
 
 import numpy
-from cartan import (vtkAsRigidAsPossibleDeformation, vtkHandleMotion, vtkLaplacianDeformation,
+from vtkcartan import (vtkAsRigidAsPossibleDeformation, vtkHandleMotion, vtkLaplacianDeformation,
                     vtkMultiresolutionDeformation, vtkPoissonDeformation,
                     vtkSimilarityDeformation)
 from vtkmodules.util.misc import calldata_type

@@ -4,7 +4,7 @@ import os
 import unittest
 
 import numpy
-from cartan import vtkDiscreteForms, vtkFrameReconstruction
+from vtkcartan import vtkDiscreteForms, vtkFrameReconstruction
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkIOXML import vtkXMLTableReader, vtkXMLTableWriter

@@ -4,7 +4,7 @@ import math
 import unittest
 
 import numpy
-from cartan import vtkHandleMotion, vtkRotationInvariantDeformation
+from vtkcartan import vtkHandleMotion, vtkRotationInvariantDeformation
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonMath import vtkMatrix4x4

@@ -6,7 +6,7 @@ import sys
 import unittest
 
 import numpy
-from cartan import (vtkHandleMotion, vtkMarkHandle, vtkRotationInvariantDeformation,
+from vtkcartan import (vtkHandleMotion, vtkMarkHandle, vtkRotationInvariantDeformation,
                     vtkShapePreservingDeformation, vtkVolumeChange)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPlane

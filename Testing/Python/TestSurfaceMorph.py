@@ -4,7 +4,7 @@ import math
 import unittest
 
 import numpy
-from cartan import vtkSurfaceMorph, vtkVolumeChange
+from vtkcartan import vtkSurfaceMorph, vtkVolumeChange
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline

@@ -13,7 +13,7 @@ import time
 from dataclasses import dataclass
 
 import numpy
-from cartan import (vtkAsRigidAsPossibleDeformation, vtkHandleMotion, vtkLaplacianDeformation,
+from vtkcartan import (vtkAsRigidAsPossibleDeformation, vtkHandleMotion, vtkLaplacianDeformation,
                     vtkMultiresolutionDeformation, vtkPoissonDeformation,
                     vtkRotationInvariantDeformation, vtkShapePreservingDeformation,
                     vtkSimilarityDeformation)

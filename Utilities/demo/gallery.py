@@ -12,7 +12,7 @@ import sys
 from dataclasses import dataclass, replace
 
 import numpy
-from cartan import (vtkHandleMotion, vtkRotationInvariantDeformation,
+from vtkcartan import (vtkHandleMotion, vtkRotationInvariantDeformation,
                     vtkShapePreservingDeformation)
 from vtkmodules.vtkIOImage import vtkPNGWriter
 

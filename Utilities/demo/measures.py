@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy
-from cartan import vtkCurvatureError, vtkVolumeChange
+from vtkcartan import vtkCurvatureError, vtkVolumeChange
 
 from tableone import points_of, triangles_of
 

@@ -19,7 +19,7 @@ import os
 import sys
 
 import numpy
-from cartan import vtkHandleMotion, vtkShapePreservingDeformation
+from vtkcartan import vtkHandleMotion, vtkShapePreservingDeformation
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
