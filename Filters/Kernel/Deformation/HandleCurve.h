@@ -5,19 +5,19 @@
 
 namespace cartan
 {
-/// The share that each vertex has in the curve of its handle: #V, adding up to 1
-/// over every handle, 0 at free vertices. `handle` (#V) is 0 at free vertices.
+/// The share of each vertex in the curve of its handle: #V, with the sum 1 over
+/// every handle, 0 at free vertices. `handle` (#V) is 0 at free vertices.
 ///
-/// The curve are the edges between vertices of one handle that do not have the
-/// handle on both sides: the handle itself where it is a line, its border where
-/// it is a region, whose inner vertices have no share. A vertex without a
-/// neighbor in its handle counts with the mean length of its edges. Where a
-/// handle has no curve, as it is a whole closed component, all its vertices have
-/// equal shares.
+/// The curve consists of the edges between vertices of one handle that do not
+/// have the handle on both sides. It is the handle itself if that is a line,
+/// and its border if it is a region, whose inner vertices have no share. A
+/// vertex without a neighbor in its handle counts with the mean length of its
+/// edges. If a handle is a whole closed component, it has no curve, and all its
+/// vertices have equal shares.
 ///
-/// Soft weights w scaled to w sqrt(share) mean the same on every mesh of a
-/// surface and in every unit of length, while w alone holds a handle the more
-/// firmly the more vertices it has.
+/// Soft weights w scaled to w sqrt(share) have the same effect on every mesh of
+/// a surface and in every unit of length. The effect of w alone increases with
+/// the number of vertices of the handle.
 Eigen::VectorXd HandleCurveShares(
   const TriangleMesh& mesh, const Points& points, const std::vector<int>& handle);
 }

@@ -5,13 +5,13 @@
 
 namespace cartan
 {
-/// Weighted means of handles' linear maps and the identity. Each map is taken
-/// apart into its rotation R = exp(r), with the rotation vector r as the user
-/// gave it, laps included, and the rest S = R^-1 A; the mean is
+/// Weighted means of handles' linear maps and the identity. Each map A is split
+/// into its rotation R = exp(r), with the rotation vector r as the user gave
+/// it, full turns included, and the remainder S = R^-1 A; the mean is
 ///
 ///   exp(sum w_k r_k) (I + sum w_k (S_k - I)).
 ///
-/// Exact in angle where all rotations share an axis.
+/// The angle is exact if all rotations share an axis.
 class MotionBlend
 {
 public:

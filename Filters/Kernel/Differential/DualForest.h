@@ -6,9 +6,9 @@
 namespace cartan
 {
 /// A spanning tree of each component's dual graph, in which triangles are nodes
-/// and hinges are arcs, as an order to walk in from the middle of its longest
-/// path. That start is never farther than need be, so that rounding adds up the
-/// least.
+/// and hinges are arcs, as the order of a walk from the middle of its longest
+/// path. From there all nodes are as near as possible, so that rounding errors
+/// accumulate least.
 struct DualForest
 {
   struct Step
@@ -20,8 +20,8 @@ struct DualForest
 
   DualForest() = default;
 
-  /// The trees of the smallest sum of `weights`, one per hinge (Kruskal's). Of
-  /// hinges with the same weight the first comes first. O(#T log #T).
+  /// The trees of the smallest sum of `weights`, one per hinge (Kruskal's).
+  /// Hinges of the same weight are taken in their order. O(#T log #T).
   DualForest(const HingeTopology& topology, const Eigen::VectorXd& weights);
 
   std::vector<Step> Steps;   ///< #T, parents before children, tree after tree

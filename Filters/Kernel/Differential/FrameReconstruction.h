@@ -24,13 +24,13 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
   const ExecutionContext& context = {});
 
 /// The same frames by conjugate gradients, without a factorization of the 3 #V
-/// matrix. `start` must be rotations near the result: seen from them the matrix
-/// is nearly three graph Laplacians, whose factors precondition it, and a
-/// handful of steps suffice; far from it hundreds are needed. `laplacian` is
-/// factorized with the vertices of `isFixed` and the unused ones fixed; the
-/// frames there are kept. Stops when the preconditioned residual is 1e-10 of
-/// that of the start. `steps`, if given, receives the number of steps; throws
-/// Error(SingularSystem) after 1000.
+/// matrix. `start` must be rotations near the result: relative to them the
+/// matrix is nearly three graph Laplacians, whose factors are the
+/// preconditioner, and a few steps suffice; far from the result hundreds are
+/// needed. `laplacian` is factorized with the vertices of `isFixed` and the
+/// unused ones fixed; the frames there are kept. Stops when the preconditioned
+/// residual is 1e-10 of that of the start. `steps`, if given, receives the
+/// number of steps; throws Error(SingularSystem) after 1000.
 Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices start, const ConstrainedSolver& laplacian,
   int* steps = nullptr, const ExecutionContext& context = {});

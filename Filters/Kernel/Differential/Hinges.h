@@ -7,8 +7,9 @@
 #include <vector>
 
 /// A triangle mesh as rigid plates that hinge on shared edges: the lengths of
-/// its edges and the angles of its hinges, which together fix each component up
-/// to a rigid motion, and the way back from them to triangles.
+/// its edges and the angles of its hinges, which together determine each
+/// component up to a rigid motion, and the reconstruction of triangles from
+/// them.
 namespace cartan
 {
 /// An edge between two triangles. In Left it runs from corner LeftCorner to the
@@ -22,8 +23,8 @@ struct Hinge
   int Edge;
 };
 
-/// Who is beside whom. An edge is in it once, a hinge is an edge that is not on
-/// the boundary.
+/// Adjacency of triangles, edges and hinges. Each edge occurs once. A hinge is
+/// an edge that is not on the boundary.
 struct HingeTopology
 {
   explicit HingeTopology(const TriangleMesh& mesh);
@@ -44,29 +45,30 @@ Eigen::VectorXd EdgeLengths(
   const HingeTopology& topology, const Points& points, const ExecutionContext& context = {});
 
 /// Unit normals of the triangles: #T x 3. A triangle without area (see HasArea)
-/// has none of its own; it takes that of a neighbor, made orthogonal to its
-/// longest edge, and sets its entry in `isDegenerate` (#T), if that is asked for.
+/// has no normal; it takes that of a neighbor, made orthogonal to its longest
+/// edge. If `isDegenerate` (#T) is given, its entry is set.
 Points HingeNormals(
   const HingeTopology& topology, const Points& points, std::vector<char>* isDegenerate = nullptr);
 
 /// The angle by which the normal turns about a hinge from Left to Right, by the
 /// right-hand rule about the edge as it runs in Left: #hinges, in (-pi, pi].
 /// Zero where the surface is flat, positive where it is convex, seen from
-/// outside. A hinge that is shut counts as pi, whichever side rounding puts it
-/// on: within a microradian of -pi the angle is that above pi.
+/// outside. A closed hinge has the angle pi, whatever its rounding: an angle
+/// within a microradian of -pi is replaced by the equivalent one above pi.
 Eigen::VectorXd HingeAngles(const HingeTopology& topology, const Points& points,
   const Points& normals, const ExecutionContext& context = {});
 
-/// `angles` plus multiples of 2 pi, each as close as possible to `previous`, the
-/// angles of the surface at `previousPoints`: hinges turn the shorter way. That
-/// may lead through pi, where a hinge's triangles pass through each other, and
-/// so a fold that is all but shut in both surfaces stays shut on the way. Where
-/// both ways are equally long, it is the one that does not lead through pi.
+/// `angles` plus multiples of 2 pi, each as close as possible to `previous`,
+/// the angles of the surface at `previousPoints`: hinges turn the shorter way.
+/// That way may pass through pi, where the hinge's triangles pass through each
+/// other; so a fold that is almost closed in both surfaces stays closed between
+/// them. If both ways are equally long, it is the one that does not pass
+/// through pi.
 ///
-/// A crease that turns by about 180 degrees must not turn one way here and the
-/// other way there. So hinges that turn by more than 150 degrees and meet at an
-/// interior vertex, one going on where the other ends (within 60 degrees), all
-/// turn in the same direction, that in which the sum of their turns is smaller.
+/// A crease that turns by about 180 degrees must turn in one direction
+/// everywhere. Therefore hinges that turn by more than 150 degrees and continue
+/// each other at an interior vertex (within 60 degrees) all turn in the same
+/// direction, the one with the smaller sum of their turns.
 Eigen::VectorXd UnwrappedAngles(const HingeTopology& topology, const Points& previousPoints,
   const Eigen::VectorXd& previous, const Eigen::VectorXd& angles);
 

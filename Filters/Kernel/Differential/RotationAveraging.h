@@ -13,13 +13,13 @@ namespace cartan
 ///
 ///   min over rotations F of sum |log(F_from C F_to^T)|^2,
 ///
-/// where the transitions C, interpolated say, fit together nowhere exactly. To
-/// first order in small turns v of all frames a term is
-/// |log(F_from C F_to^T) + v_from - v_to|^2, so each step is a linear system with
-/// the graph's Laplacian, which does not depend on C (Govindu, Lie-Algebraic
-/// Averaging for Globally Consistent Motion Estimation, 2004). The frames stay
-/// rotations; those of the linear problem min sum |F_from C - F_to|^2 shrink
-/// where transitions disagree.
+/// where the transitions C (for example interpolated ones) do not fit together
+/// exactly. To first order in small rotations v of all frames a term is
+/// |log(F_from C F_to^T) + v_from - v_to|^2, so each step is a linear system
+/// with the graph's Laplacian, which does not depend on C (Govindu,
+/// Lie-Algebraic Averaging for Globally Consistent Motion Estimation, 2004).
+/// The frames stay rotations; those of the linear problem
+/// min sum |F_from C - F_to|^2 shrink where transitions disagree.
 class RotationAveraging
 {
 public:

@@ -5,15 +5,15 @@
 
 namespace cartan
 {
-/// Puts a surface together from triangles that lie each for itself: positions x
-/// that minimize
+/// Reconstructs a surface from separate triangles: positions x that minimize
 ///
 ///   sum over triangles and their edges of w |x_b - x_a - (p_b - p_a)|^2,
 ///
-/// p a triangle's own corners and w a weight for each of its edges. With half the
-/// cotangents of the opposite angles (CornerWeights) this is the fit of the
-/// triangles' gradients weighted by area (Yu et al., Mesh Editing with
-/// Poisson-based Gradient Field Manipulation, 2004). Factorized once for all p.
+/// where p are the triangle's own corners and w is a weight for each of its
+/// edges. With half the cotangents of the opposite angles (CornerWeights) this
+/// is the fit of the triangles' gradients weighted by area (Yu et al., Mesh
+/// Editing with Poisson-based Gradient Field Manipulation, 2004). Factorized
+/// once for all p.
 class TriangleStitching
 {
 public:

@@ -7,17 +7,17 @@
 
 namespace cartan
 {
-/// Where a ray first meets the surface.
+/// The first point where a ray meets the surface.
 struct RayHit
 {
   double Distance = -1.0; ///< in length units; negative: nowhere
   int Triangle = -1;
 };
 
-/// Finds what a ray first meets of a surface: a tree of boxes over its
-/// triangles, each half of those above it. Where neighbors share an edge or a
-/// vertex, no ray slips between them. Does not change once it is made, and may
-/// be used from several threads.
+/// Finds the first triangle that a ray meets: a tree of boxes over the
+/// triangles, each with half the triangles of its parent. No ray passes between
+/// neighbors that share an edge or a vertex. It is immutable, so several
+/// threads may use it.
 class RayTree
 {
 public:
@@ -25,10 +25,10 @@ public:
   RayTree(const Triangles& triangles, const Points& points);
 
   /// The triangle that the ray from a point in a unit direction meets first, on
-  /// whichever side, its start included; of several that are equally far the
-  /// one of the smallest id. Triangles without area are not met; those that are
-  /// seen edge-on need not be, but their neighbors are. The start is at most
-  /// some hundred bounding diagonals away. O(log #T) for most surfaces.
+  /// either side, its start included; of several at the same distance the one
+  /// of the smallest id. Triangles without area are ignored. Triangles parallel
+  /// to the ray may be missed, but their neighbors are found. The start is at
+  /// most some hundred bounding diagonals away. O(log #T) for most surfaces.
   RayHit FirstHit(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const;
 
 private:

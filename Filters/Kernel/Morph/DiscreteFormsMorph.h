@@ -9,16 +9,17 @@
 
 namespace cartan
 {
-/// Surfaces between key frames by their discrete forms (Lipman et al., Linear
-/// Rotation-invariant Coordinates for Meshes, 2005, section 4.1): the projected
-/// lengths, angles and heights of all one-rings are interpolated, frames found
-/// that fit what follows for neighboring frames, and positions that fit the
-/// one-rings in these frames. Bends and twists of any number of laps come out as
-/// such, because each one-ring turns a little only against the next.
+/// Interpolates between key frames by their discrete forms (Lipman et al.,
+/// Linear Rotation-invariant Coordinates for Meshes, 2005, section 4.1): the
+/// projected lengths, angles and heights of all one-rings are interpolated;
+/// then the frames are computed that fit the transitions between neighbors
+/// best, and the positions that fit the one-rings in these frames best. Bends
+/// and twists may have any number of full turns, because neighboring one-rings
+/// turn only a little relative to each other.
 ///
-/// The interpolated transitions fit together nowhere exactly. Raw frames of the
-/// paper's linear system shrink away from where one is given, so all solvers here
-/// end with rotations.
+/// The interpolated transitions do not fit together exactly. The frames of the
+/// paper's linear system shrink with the distance from the given one, so all
+/// solvers here end with rotations.
 class DiscreteFormsMorph : public SurfaceMorph
 {
 public:

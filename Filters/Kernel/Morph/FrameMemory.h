@@ -8,8 +8,8 @@
 
 namespace cartan
 {
-/// The frames of a morph at its key frames and at the parameter asked for last:
-/// where to start from for those at another.
+/// The frames of a morph at its key frames and at the last parameter: starting
+/// points for the frames at another parameter.
 class FrameMemory
 {
 public:

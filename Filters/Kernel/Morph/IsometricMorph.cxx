@@ -26,7 +26,7 @@ IdSample WithoutLength(const HingeTopology& topology, const Eigen::VectorXd& len
   return sample;
 }
 
-/// Refuses what no edge lengths and angles can be had of. `lengths` is filled.
+/// Throws if edge lengths or hinge angles are undefined. Fills `lengths`.
 void CheckKey(const HingeTopology& topology, const Points& key, int number,
   Eigen::VectorXd& lengths, const ExecutionContext& context)
 {

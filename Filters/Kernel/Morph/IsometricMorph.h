@@ -15,29 +15,29 @@
 
 namespace cartan
 {
-/// The averaging of triangles' frames over hinges, whose transitions Q go from the
-/// left triangle to the right one. `isHeld` (#T) are those that are kept, one in
-/// each component at least.
+/// The averaging of triangles' frames over hinges, whose transitions Q go from
+/// the left triangle to the right one. The triangles of `isHeld` (#T) keep
+/// their frames; each component needs at least one.
 std::unique_ptr<RotationAveraging> HingeAveraging(const HingeTopology& topology,
   const std::vector<char>& isHeld, const ExecutionContext& context = {});
 
 struct IsometricMorphOptions
 {
-  /// What to do with a component whose dual graph is not a tree: its lengths and
-  /// angles, once interpolated, do not fit together exactly. One whose dual graph
-  /// is a tree is the same with all of them.
+  /// How to reconstruct a component whose dual graph is not a tree: its
+  /// interpolated lengths and angles do not fit together exactly. If the dual
+  /// graph is a tree, all methods give the same result.
   enum class Method
   {
-    /// Frames of the triangles that fit all angles best, then positions that fit
-    /// the triangles, so turned, best.
+    /// First the frames of triangles that fit all angles best, then the
+    /// positions that fit the triangles in these frames best.
     Automatic,
     /// Frames from a walk over a spanning tree of the dual graph, through the
     /// hinges that turn least; then positions as above.
     TreeStitched,
-    /// The paper's: triangles placed one beside the other on a walk over the
-    /// spanning tree, each vertex at the mean of where its triangles put it. The
-    /// paper's own mean is over all combinations of placements on the way, whose
-    /// errors grow without bound on large meshes.
+    /// The paper's: triangles are placed one after the other in a walk over the
+    /// spanning tree; each vertex is at the mean of the positions that its
+    /// triangles give it. The paper's own mean is over all combinations of
+    /// placements on the way, whose errors grow without bound on large meshes.
     TreeAverage
   };
   Method Type = Method::Automatic;
@@ -51,9 +51,10 @@ struct IsometricMorphOptions
 /// Triangular Meshes, 2008. Edge lengths and the signed angles of hinges (the
 /// edges between two triangles, see UnwrappedAngles) are interpolated, linearly
 /// between two key frames and by monotone cubics through more, and a surface is
-/// made of them. The paper interpolates normals rather than angles; these do not
-/// fit to the edges in general, not even for three triangles in a row, but give
-/// the same where all hinges that move are parallel, as in its example.
+/// reconstructed from them. The paper interpolates normals rather than angles;
+/// these do not fit to the edges in general, not even for three triangles in a
+/// row, but give the same where all hinges that move are parallel, as in its
+/// example.
 ///
 /// - Where the dual graph of a component is a tree (no interior vertices, as in
 ///   strips and triangulated polygons), lengths and angles are just as many as
@@ -69,8 +70,8 @@ struct IsometricMorphOptions
 class IsometricMorph : public SurfaceMorph
 {
 public:
-  /// Triangles without area are no obstacle: in a key frame where they are, they
-  /// face as a neighbor does.
+  /// Triangles without area are allowed: in a key frame where a triangle has
+  /// none, it takes the normal of a neighbor.
   ///
   /// Throws Error(BadInput) for what KeyInterpolation refuses, key frames of
   /// another size, coordinates that are not finite, and edges of no length, which
@@ -78,13 +79,13 @@ public:
   explicit IsometricMorph(const KeyFrames& keys, const IsometricMorphOptions& options = {},
     const ExecutionContext& context = {});
 
-  /// The surface at t, #V x 3, each component up to a rigid motion that does not
-  /// jump with t; zero for unused vertices. At the parameter of a key frame that
-  /// key frame.
+  /// The surface at t, #V x 3, each component up to a rigid motion that is
+  /// continuous in t; zero for unused vertices. At the parameter of a key frame
+  /// it is that key frame.
   ///
-  /// Angles go on beyond the first and last key frame. So do lengths; where they
-  /// no longer make a triangle it is flat. Throws Error(BadInput) where an edge
-  /// would have no length.
+  /// Angles and lengths are extrapolated beyond the first and last key frame.
+  /// Lengths that break the triangle inequality give a flat triangle. Throws
+  /// Error(BadInput) if a length is not positive.
   Points Evaluate(double t, const ExecutionContext& context = {}) override;
 
   /// The edge lengths at t, which Evaluate reaches or comes close to: #E, in the

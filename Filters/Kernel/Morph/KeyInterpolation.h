@@ -8,24 +8,24 @@
 
 namespace cartan
 {
-/// Where t lies between two key parameters: Part of the way from Before to the
-/// one after it, below 0 or above 1 outside of all.
+/// The position of t between two key parameters: the fraction Part of the way
+/// from Before to the next, below 0 or above 1 outside of all.
 struct KeyPlace
 {
   int Before;
   double Part;
 };
 
-/// `parameters` are two or more, increasing. At an inner one Part is 0.
+/// `parameters` are two or more, increasing. At an interior one Part is 0.
 KeyPlace PlaceBetweenKeys(double t, const std::vector<double>& parameters);
 
-/// Numbers that are known at key parameters, in between: linear through two
-/// keys, monotone piecewise cubic with a continuous derivative through more
-/// (Fritsch and Carlson, Monotone Piecewise Cubic Interpolation, 1980), so that
-/// nothing overshoots between two keys. The slope at a key is that of the
+/// Interpolates numbers that are known at key parameters: linearly between two
+/// keys, by monotone piecewise cubics with a continuous derivative through more
+/// (Fritsch and Carlson, Monotone Piecewise Cubic Interpolation, 1980), which
+/// do not overshoot between two keys. The slope at a key is that of the
 /// parabola through it and its neighbors, limited to three times the smaller of
-/// the two secants beside it, and zero where those differ in sign. Outside of the
-/// keys it goes on straight with the slope of the first or last one.
+/// the two adjacent secants, and zero if these differ in sign. Outside of the
+/// keys the function is linear, with the slope of the first or last one.
 ///
 /// The same numbers in reverse order at the mirrored parameters give the
 /// mirrored result.

@@ -6,8 +6,8 @@
 
 namespace cartan
 {
-/// The coordinates themselves interpolated, to compare with: shrinks whatever
-/// turns. Leaves each component in its place.
+/// Interpolates coordinates, for comparison: shrinks all parts that turn. Each
+/// component keeps its own position.
 class LinearMorph : public SurfaceMorph
 {
 public:

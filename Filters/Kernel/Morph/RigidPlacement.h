@@ -6,26 +6,25 @@
 
 namespace cartan
 {
-/// Weights of RigidPlacement by area: a third of the adjacent triangles' in all key
-/// frames together. #V.
+/// Weights of RigidPlacement by area: a third of the area of the adjacent
+/// triangles, summed over all key frames. #V.
 Eigen::VectorXd AreaWeights(const KeyFrames& keys, const ExecutionContext& context = {});
 
-/// Weights of RigidPlacement that hold `isPinned` (#V) in place: 1 there, 0
-/// elsewhere. Throws Error(BadInput) where those of a component, in the first key
-/// frame, lie on a line, about which the component could turn. #V.
+/// Weights of RigidPlacement that fix the vertices of `isPinned` (#V): 1 there,
+/// 0 elsewhere. Throws Error(BadInput) if those of a component lie on a line in
+/// the first key frame, because the component could turn about it. #V.
 Eigen::VectorXd PinWeights(const KeyFrames& keys, const std::vector<char>& isPinned);
 
-/// Puts surfaces between key frames, known up to a rigid motion of each
-/// component, where a rigid interpolation of the key frames has them: the
-/// centers of the components move as KeyInterpolation says, and the turn that
-/// best aligns one with the key frame before goes over into the turn that best
-/// aligns it with the key frame after at an even rate about one axis, by less
-/// than half a turn from one key frame to the next.
+/// Moves surfaces between key frames, known up to a rigid motion of each
+/// component, to a rigid interpolation of the key frames. KeyInterpolation
+/// gives the centers of the components. One rotation best aligns a component
+/// with the key frame before, another with the key frame after; between them it
+/// turns at an even rate about one axis, by less than half a turn.
 class RigidPlacement
 {
 public:
-  /// `weights` (#V, >= 0) say how much each vertex counts. A component whose
-  /// vertices have no weight at all is placed by all of them alike.
+  /// `weights` (#V, >= 0) are the weights of vertices. If all vertices of a
+  /// component have the weight 0, they count equally.
   RigidPlacement(const KeyFrames& keys, Eigen::VectorXd weights);
 
   void Place(double t, Points& positions) const;

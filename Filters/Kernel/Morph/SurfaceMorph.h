@@ -10,7 +10,7 @@
 
 namespace cartan
 {
-/// A surface at several parameters, all of one connectivity.
+/// A surface at several parameters, with one connectivity.
 struct KeyFrames
 {
   std::shared_ptr<const TriangleMesh> Mesh;
@@ -18,23 +18,22 @@ struct KeyFrames
   std::vector<double> Parameters; ///< one per key frame, finite and increasing
 };
 
-/// A method that finds surfaces between key frames, with what it keeps from one
-/// parameter to the next.
+/// A method that computes surfaces between key frames, with the data that it
+/// keeps from one parameter to the next.
 class SurfaceMorph
 {
 public:
   virtual ~SurfaceMorph() = default;
 
-  /// The surface at parameter t: #V x 3, each component in a place of its own
-  /// (RigidPlacement puts it where it belongs), those of the key frames at their
-  /// parameters. Outside of the key frames it goes on as at their ends.
+  /// The surface at parameter t: #V x 3, each component up to a rigid motion,
+  /// which RigidPlacement determines; the key frames at their parameters.
+  /// Parameters outside of the key frames extrapolate.
   virtual Points Evaluate(double t, const ExecutionContext& context) = 0;
 
-  /// How many steps the last Evaluate took to find what has no closed form; 0
-  /// for direct methods.
+  /// The number of iterations of the last Evaluate; 0 for direct methods.
   virtual int GetNumberOfIterations() const { return 0; }
 
-  /// What is odd about the last result, in sentences; empty if nothing is.
+  /// Warnings about the last result, in sentences; empty if there are none.
   virtual std::string GetWarning() const { return {}; }
 };
 }

@@ -7,17 +7,18 @@
 
 namespace cartan
 {
-/// Surfaces between key frames by the linear map that takes each triangle from
-/// one to the next, split into a rotation and a stretch (Sumner et al.,
-/// Mesh-based Inverse Kinematics, 2005; Sorkine, Differential Representations for
-/// Mesh Processing, 2006, section 4.4): axis times angle of the rotation and the
-/// stretched triangle are interpolated, and the triangles stitched together.
+/// Interpolates between key frames the linear map of each triangle from one key
+/// frame to the next, split into a rotation and a stretch (Sumner et al.,
+/// Mesh-based Inverse Kinematics, 2005; Sorkine, Differential Representations
+/// for Mesh Processing, 2006, section 4.4): axis times angle of the rotation
+/// and the stretched triangle are interpolated, and the triangles are stitched
+/// together.
 ///
-/// Of the many vectors that mean one rotation each triangle takes the one nearest
-/// to that of its neighbor, the most alike neighbors first. That is consistent
-/// where no part of the surface turns by nearly a whole lap against the mean of
-/// all; there every axis is as good as any other, and the surface tears or
-/// creases. DiscreteFormsMorph has no such limit.
+/// Many rotation vectors give the same rotation. Each triangle takes the one
+/// nearest to that of its neighbor, the most similar neighbors first. This is
+/// consistent unless a part of the surface turns by nearly a full turn relative
+/// to the mean of the surface. There the axis is ambiguous, and the surface
+/// tears or creases. DiscreteFormsMorph has no such limit.
 class TriangleGradientMorph : public SurfaceMorph
 {
 public:
