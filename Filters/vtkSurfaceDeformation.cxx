@@ -5,6 +5,7 @@
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/HandleCurve.h"
 #include "Kernel/Deformation/HandleProblem.h"
+#include "Kernel/Deformation/SurfaceDeformer.h"
 #include "KernelBridge.h"
 #include "vtkHandleMotion.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Algebra/ConstrainedSolver.h"
 
+#include "Base/Bytes.h"
+
 #include <Eigen/SparseCholesky>
 
 #ifdef CARTAN_HAVE_CHOLMOD
@@ -23,6 +25,7 @@ public:
   /// Returns false when the matrix is not positive definite.
   virtual bool Factorize(const SparseMatrix& lower) = 0;
   virtual Eigen::MatrixXd Solve(const Eigen::MatrixXd& rightHandSide) = 0;
+  virtual std::size_t GetBytes() const = 0;
 };
 
 class ConstrainedSolver::EigenFactor : public ConstrainedSolver::Factor
@@ -47,6 +50,12 @@ public:
       this->SolveColumns<1>(rightHandSide, column, solution);
     }
     return solution;
+  }
+  std::size_t GetBytes() const override
+  {
+    return this->Cholesky.rows() > 0 ? BytesOf(this->Cholesky.matrixL().nestedExpression()) +
+        2 * static_cast<std::size_t>(this->Cholesky.rows()) * sizeof(int)
+                                     : 0;
   }
 
 private:
@@ -169,6 +178,8 @@ public:
     return Eigen::Map<const Eigen::MatrixXd>(
       static_cast<const double*>(this->Solution->x), rightHandSide.rows(), rightHandSide.cols());
   }
+
+  std::size_t GetBytes() const override { return this->Common.memory_inuse; }
 
 private:
   /// CHOLMOD starts OpenMP's threads for the little work around each product of
@@ -414,6 +425,12 @@ void ConstrainedSolver::Factorize(const SparseMatrix& matrix, const std::vector<
         "area, or use uniform weights.");
   }
   context.Report(1.0);
+}
+
+std::size_t ConstrainedSolver::GetBytes() const
+{
+  return (this->Factors ? this->Factors->GetBytes() : 0) +
+    TotalBytes(this->Free, this->FreeIndex, this->FreeBlock, this->Coupling);
 }
 
 Eigen::MatrixXd ConstrainedSolver::SolveFree(const Eigen::MatrixXd& rightHandSide) const

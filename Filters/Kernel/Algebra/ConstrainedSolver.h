@@ -62,6 +62,9 @@ public:
   int GetNumberOfFactorizations() const { return this->Factorizations; }
   int GetNumberOfAnalyses() const { return this->Analyses; }
 
+  /// The memory of the factors and of the matrices that are kept with them.
+  std::size_t GetBytes() const;
+
   SolverBackend GetBackend() const { return this->Backend; }
 
 private:

@@ -76,21 +76,22 @@ private:
 
 AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, RigidityEnergy energy,
   InitialGuess guess, SolverBackend backend, const ExecutionContext& context)
-  : Problem(std::move(problem))
+  : SurfaceDeformer(std::move(problem))
   , Energy(energy)
   , GuessKind(guess)
 {
-  this->Problem.Weights = this->Problem.PositionWeights;
-  this->Problem.ClampWeights = energy != RigidityEnergy::SpokesAndRims;
+  HandleProblem ofGuess = this->Problem;
+  ofGuess.Weights = ofGuess.PositionWeights;
+  ofGuess.ClampWeights = energy != RigidityEnergy::SpokesAndRims;
   if (guess == InitialGuess::RotationInvariant)
   {
     this->Guess =
-      std::make_unique<RotationInvariantDeformer>(this->Problem, backend, context.Part(0.0, 0.9));
+      std::make_unique<RotationInvariantDeformer>(ofGuess, backend, context.Part(0.0, 0.9));
   }
   else
   {
     this->Guess =
-      std::make_unique<ShapePreservingDeformer>(this->Problem, backend, context.Part(0.0, 0.9));
+      std::make_unique<ShapePreservingDeformer>(ofGuess, backend, context.Part(0.0, 0.9));
   }
   this->System = this->Guess->GetPositionSystem();
   this->MovingHandles = MovingHandleOfVertices(this->Problem);
@@ -113,6 +114,14 @@ AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, Rigi
 }
 
 AsRigidAsPossibleDeformer::~AsRigidAsPossibleDeformer() = default;
+
+std::size_t AsRigidAsPossibleDeformer::GetBytes() const
+{
+  return this->Problem.GetBytes() + this->Guess->GetBytes() +
+    TotalBytes(this->Vertices, this->Unknowns, this->Cells, this->HoldsRotation, this->SpokeOffsets,
+      this->Spokes, this->Rims, this->Colors, this->MovingHandles, this->Rest, this->Current,
+      this->Rotations, this->CellEnergies, this->Residual, this->Energies);
+}
 
 Eigen::VectorXd AsRigidAsPossibleDeformer::GetVertexEnergies() const
 {

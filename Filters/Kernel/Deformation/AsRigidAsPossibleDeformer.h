@@ -110,6 +110,7 @@ public:
   }
   int GetNumberOfFreeVertices() const override { return this->System->NumberOfUnknowns(); }
   std::string GetWarning() const override { return this->Warning; }
+  std::size_t GetBytes() const override;
 
 private:
   /// An edge of a cell from its center.
@@ -138,7 +139,6 @@ private:
   void Start(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
 
-  HandleProblem Problem;
   RigidityEnergy Energy;
   InitialGuess GuessKind;
   std::unique_ptr<FrameDeformer> Guess;

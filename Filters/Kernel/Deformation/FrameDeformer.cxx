@@ -12,7 +12,7 @@ namespace cartan
 {
 FrameDeformer::FrameDeformer(
   HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
-  : Problem(std::move(problem))
+  : SurfaceDeformer(std::move(problem))
 {
   const TriangleMesh& mesh = *this->Problem.Mesh;
   const auto symmetricWeights = [&](LaplacianWeights weights)
@@ -51,6 +51,15 @@ int FrameDeformer::GetNumberOfFactorizations() const
 {
   return this->Frames->GetNumberOfFactorizations() +
     (this->Positions == this->Frames ? 0 : this->Positions->GetNumberOfFactorizations());
+}
+
+std::size_t FrameDeformer::GetBytes() const
+{
+  return this->Problem.GetBytes() + this->Frames->GetBytes() +
+    (this->Positions == this->Frames ? 0 : this->Positions->GetBytes()) +
+    (this->Model ? this->Model->GetBytes() : 0) +
+    TotalBytes(*this->EdgeWeights, this->HandleVertices, this->Transforms, this->TriangleTransforms,
+      this->TriangleWeights);
 }
 
 void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,

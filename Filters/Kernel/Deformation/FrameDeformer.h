@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Deformation/HandleLaplacian.h"
+#include "Deformation/SurfaceDeformer.h"
 #include "Measure/VolumePreservation.h"
 
 namespace cartan
@@ -49,7 +50,7 @@ public:
   int GetNumberOfFreeVertices() const override { return this->Frames->NumberOfUnknowns(); }
   std::string GetWarning() const override { return this->Warning; }
 
-  const HandleProblem& GetProblem() const { return this->Problem; }
+  std::size_t GetBytes() const override;
 
   /// For what refines the result: the system of the positions, and the symmetric
   /// weights of the edges in it (#D).
@@ -80,7 +81,6 @@ protected:
       (this->Correction != VolumeCorrection::None || this->Close);
   }
 
-  HandleProblem Problem;
   std::shared_ptr<const Eigen::VectorXd> EdgeWeights;
   /// The system of the frames, and of the positions where it is the same.
   std::shared_ptr<HandleLaplacian> Frames;

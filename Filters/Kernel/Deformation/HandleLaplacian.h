@@ -108,6 +108,13 @@ public:
 
   int GetNumberOfFactorizations() const { return this->Solver.GetNumberOfFactorizations(); }
 
+  std::size_t GetBytes() const
+  {
+    return this->Solver.GetBytes() +
+      TotalBytes(this->Vertices, this->MovingHandles, this->SquaredSoftWeights, this->EdgeOffsets,
+        this->Edges);
+  }
+
 private:
   std::vector<int> Vertices;
   std::vector<int> MovingHandles;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Differential/Laplacian.h"
 
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace cartan
@@ -32,6 +32,9 @@ struct HandleProblem
   /// Off: the frames of moving handles follow their motions, and the surface
   /// finds its place from the pinned ones alone.
   bool ConstrainPositions = true;
+
+  /// The memory that it holds, without the mesh and the rest positions.
+  std::size_t GetBytes() const { return TotalBytes(this->Handle, this->Moving, this->SoftWeights); }
 };
 
 /// x -> Linear x + Translation for one handle.
@@ -67,25 +70,5 @@ struct DeformedSurface
   Matrices Transforms;
   /// The factors of the frames by a volume correction: #V, 1 where there is none.
   Eigen::VectorXd FrameScale;
-};
-
-/// A deformation method with everything that survives from one motion to the
-/// next.
-class SurfaceDeformer
-{
-public:
-  virtual ~SurfaceDeformer() = default;
-
-  /// Writes the deformed surface into `result`, whose memory is reused.
-  virtual void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
-    const ExecutionContext& context) = 0;
-
-  virtual int GetNumberOfFactorizations() const = 0;
-
-  /// What is odd about the last result, in sentences; empty if nothing is.
-  virtual std::string GetWarning() const { return {}; }
-
-  /// The vertices that are solved for.
-  virtual int GetNumberOfFreeVertices() const = 0;
 };
 }

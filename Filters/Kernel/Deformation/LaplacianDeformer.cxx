@@ -46,7 +46,7 @@ Eigen::Matrix<double, 3, 4> SimilarityOf(const Eigen::Vector3d& d)
 
 LaplacianDeformer::LaplacianDeformer(HandleProblem problem, LaplacianRotations rotations,
   SolverBackend backend, const ExecutionContext& context)
-  : Problem(std::move(problem))
+  : SurfaceDeformer(std::move(problem))
   , Rotations(rotations)
   , System(this->Problem, 2, backend, context.Part(0.0, 0.5))
   , Differential(this->System.DifferentialCoordinates(*this->Problem.Rest))

@@ -48,6 +48,11 @@ public:
   {
     return static_cast<int>(this->System.GetUnknowns().size());
   }
+  std::size_t GetBytes() const override
+  {
+    return this->Problem.GetBytes() + this->System.GetBytes() + this->ImplicitSolver.GetBytes() +
+      TotalBytes(this->Differential, this->Rows, this->TwoRings, this->Transforms, this->Fits);
+  }
 
 private:
   void FindRows();
@@ -56,7 +61,6 @@ private:
   void SolveImplicitly(Points& positions);
   void SolveRotated(const HandleTargets& targets, Points& positions) const;
 
-  HandleProblem Problem;
   LaplacianRotations Rotations;
   PolyharmonicSystem System;
   int Rounds = 5;

@@ -7,7 +7,7 @@ namespace cartan
 {
 MultiresolutionDeformer::MultiresolutionDeformer(
   HandleProblem problem, int order, SolverBackend backend, const ExecutionContext& context)
-  : Problem(std::move(problem))
+  : SurfaceDeformer(std::move(problem))
   , System(this->Problem, order, backend, context.Part(0.0, 0.9))
   , RestBase(*this->Problem.Rest)
 {

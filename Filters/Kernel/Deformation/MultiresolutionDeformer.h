@@ -28,9 +28,12 @@ public:
   {
     return static_cast<int>(this->System.GetUnknowns().size());
   }
+  std::size_t GetBytes() const override
+  {
+    return this->Problem.GetBytes() + this->System.GetBytes() + BytesOf(this->RestBase);
+  }
 
 private:
-  HandleProblem Problem;
   PolyharmonicSystem System;
   Points RestBase; ///< #V x 3
 };

@@ -28,10 +28,23 @@ public:
   PoissonDeformer(HandleProblem problem, Propagation propagation,
     SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
 
+  /// Geodesic weights know distances from pinned handles and from moving ones
+  /// apart: one at rest is no pinned one.
+  bool Serves(const HandleProblem& problem) const override
+  {
+    return this->Kind == Propagation::Geodesic ? this->ServesSameMoving(problem)
+                                               : FrameDeformer::Serves(problem);
+  }
+  std::size_t GetBytes() const override
+  {
+    return FrameDeformer::GetBytes() + TotalBytes(this->Weights, this->Triangles);
+  }
+
 protected:
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
 
 private:
+  Propagation Kind;
   Field Weights; ///< #V x #Moving
   /// Those around unknown positions.
   std::vector<int> Triangles;

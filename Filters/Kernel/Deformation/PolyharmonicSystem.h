@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Deformation/HandleLaplacian.h"
+#include "Deformation/SurfaceDeformer.h"
 
 namespace cartan
 {
@@ -41,6 +42,12 @@ public:
   void Solve(const Points& rightHandSide, Points& values) const;
 
   int GetNumberOfFactorizations() const { return this->Solver.GetNumberOfFactorizations(); }
+
+  std::size_t GetBytes() const
+  {
+    return this->Solver.GetBytes() + this->Problem.GetBytes() +
+      TotalBytes(this->MovingHandles, this->Laplacian, this->InverseMass, this->Stiffness);
+  }
 
 private:
   HandleProblem Problem;

@@ -43,6 +43,11 @@ public:
   RotationInvariantDeformer(HandleProblem problem, SolverBackend backend = SolverBackend::Automatic,
     const ExecutionContext& context = {});
 
+  std::size_t GetBytes() const override
+  {
+    return FrameDeformer::GetBytes() + TotalBytes(this->Harmonic, this->DragFields);
+  }
+
   void SetFrameProjection(FrameProjection projection) { this->Projection = projection; }
 
 protected:

@@ -55,6 +55,11 @@ public:
     return FrameDeformer::GetNumberOfFactorizations() +
       this->IterationSolver.GetNumberOfFactorizations();
   }
+  std::size_t GetBytes() const override
+  {
+    return FrameDeformer::GetBytes() + this->IterationSolver.GetBytes() +
+      TotalBytes(this->Harmonic, this->Triangles);
+  }
 
 protected:
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;

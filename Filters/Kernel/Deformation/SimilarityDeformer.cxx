@@ -85,7 +85,8 @@ SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& 
 
 SimilarityDeformer::SimilarityDeformer(HandleProblem problem, const Options& options,
   SolverBackend backend, const ExecutionContext& context)
-  : Problem(std::move(problem))
+  : SurfaceDeformer(std::move(problem))
+  , ConstrainsTransforms(options.ConstrainTransforms)
   , Backend(backend)
   , MovingHandles(MovingHandleOfVertices(this->Problem))
   , EdgeWeights(
@@ -123,6 +124,15 @@ SimilarityDeformer::SimilarityDeformer(HandleProblem problem, const Options& opt
 
   this->Transforms = Identities(mesh.NumberOfVertices());
   this->Scales.setOnes(mesh.NumberOfVertices());
+}
+
+std::size_t SimilarityDeformer::GetBytes() const
+{
+  return this->Problem.GetBytes() + this->Gradients->GetBytes() + this->GradientSolver.GetBytes() +
+    this->PositionSolver.GetBytes() + (this->Edges ? this->Edges->GetBytes() : 0) +
+    TotalBytes(this->MovingHandles, this->SoftPositions, this->EdgeWeights, this->RowScales,
+      this->EdgeLengths, this->GradientStiffness, this->Values, this->DragFields,
+      this->PositionColumns, this->Transforms, this->Scales);
 }
 
 GradientConstraints SimilarityDeformer::ReadConstraints(const Options& options)

@@ -101,6 +101,15 @@ public:
   int GetNumberOfFactorizations() const override;
   int GetNumberOfFreeVertices() const override { return this->Gradients->NumberOfUnknowns(); }
   std::string GetWarning() const override { return this->Warning; }
+  std::size_t GetBytes() const override;
+
+  /// A handle at rest that gives no transforms leaves the surface beside it
+  /// free to turn; pinned ones always give them.
+  bool Serves(const HandleProblem& problem) const override
+  {
+    return this->ConstrainsTransforms ? SurfaceDeformer::Serves(problem)
+                                      : this->ServesSameMoving(problem);
+  }
 
   int GetNumberOfDisplacedVertices() const
   {
@@ -148,7 +157,7 @@ private:
   void SolveLeastSquares(Points& positions, const ExecutionContext& context);
   void WarnOfSingularTransforms(const HandleTargets& targets);
 
-  HandleProblem Problem;
+  bool ConstrainsTransforms;
   SolverBackend Backend;
   std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
   Eigen::VectorXd SoftPositions;  ///< #V, w^2 of softly held positions

@@ -27,6 +27,7 @@ struct DualForest
   std::vector<Step> Steps;   ///< #T, parents before children, tree after tree
   std::vector<int> Tree;     ///< #T, the number of a triangle's tree, from 0
   std::vector<char> IsWhole; ///< per tree: whether all hinges are in it, none left out
+  std::size_t GetBytes() const { return TotalBytes(this->Steps, this->Tree, this->IsWhole); }
   int NumberOfTrees() const { return static_cast<int>(this->IsWhole.size()); }
 };
 

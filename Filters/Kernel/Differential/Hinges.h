@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
 
@@ -32,6 +33,11 @@ struct HingeTopology
   int NumberOfTriangles() const { return static_cast<int>(this->Corners.rows()); }
   int NumberOfEdges() const { return static_cast<int>(this->Edges.rows()); }
   int NumberOfHinges() const { return static_cast<int>(this->Hinges.size()); }
+
+  std::size_t GetBytes() const
+  {
+    return TotalBytes(this->Corners, this->CornerEdges, this->Edges, this->Hinges);
+  }
 
   int NumberOfVertices;
   Triangles Corners;     ///< #T x 3, vertices

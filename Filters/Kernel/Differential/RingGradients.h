@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
 
@@ -55,6 +56,12 @@ struct SparseRows
     return transposed;
   }
 };
+
+template <typename Value>
+std::size_t BytesOf(const SparseRows<Value>& rows)
+{
+  return TotalBytes(rows.Offsets, rows.Entries);
+}
 
 /// `count` rows; makeRange(begin, end, rows) appends those from begin to end - 1,
 /// in any order of the ranges and from any thread.
@@ -228,6 +235,13 @@ public:
   /// The rest positions with degenerate vertices displaced: #V x 3.
   const Points& DisplacedRest() const { return this->Displaced; }
   int GetNumberOfDisplacedVertices() const { return this->DisplacedCount; }
+
+  std::size_t GetBytes() const
+  {
+    return TotalBytes(this->Displaced, this->Vertices, this->PositionColumns, this->Givens,
+      this->Active, this->RowOfVertex, this->VertexOfRow, this->IsGivenRow, this->Gradients,
+      this->Coherent);
+  }
 
 private:
   using Row3 = std::vector<SparseRows<Eigen::Vector3d>::Entry>;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Algebra/ConstrainedSolver.h"
+#include "Base/Bytes.h"
 
 #include <memory>
 #include <vector>
@@ -49,6 +50,9 @@ public:
     const Matrices& transitions, Matrices& frames, const ExecutionContext& context = {}) const;
 
   static constexpr int MaximumSteps = 50;
+
+  /// The memory that it holds, the Laplacian included.
+  std::size_t GetBytes() const { return BytesOf(this->Edges) + this->Laplacian->GetBytes(); }
 
 private:
   int NodeCount;

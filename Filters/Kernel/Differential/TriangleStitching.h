@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Algebra/ConstrainedSolver.h"
+#include "Base/Bytes.h"
 
 namespace cartan
 {
@@ -29,6 +30,11 @@ public:
   /// other; where the triangle lies does not matter. Writes `positions` (#V x 3)
   /// but for those held.
   void Stitch(const Matrices& corners, Points& positions) const;
+
+  std::size_t GetBytes() const
+  {
+    return this->Solver.GetBytes() + TotalBytes(this->Corners, this->Weights);
+  }
 
 private:
   Triangles Corners;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/RayTree.h"
 #include "Mesh/TriangleMesh.h"
@@ -37,6 +38,12 @@ struct VolumeModel
   std::string Warning;
 
   bool IsEmpty() const { return this->LocalDepth.size() == 0; }
+
+  std::size_t GetBytes() const
+  {
+    return TotalBytes(this->LocalDepth, this->IsMeasured, this->Offsets, this->ColumnHeight,
+      this->EnclosesVolume, this->Volumes);
+  }
 };
 
 /// Measures the depth by a cone of rays (half angle 15 degrees) around the

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/TriangleMesh.h"
 
+#include "Base/Bytes.h"
 #include "Mesh/Geometry.h"
 
 #include <limits>
@@ -365,6 +366,12 @@ TriangleMesh::TriangleMesh(int numberOfVertices, Triangles triangles)
     }
     ++this->ComponentCount;
   }
+}
+
+std::size_t TriangleMesh::GetBytes() const
+{
+  return TotalBytes(this->Corners, this->RingOffsets, this->Neighbors, this->RingTriangles,
+    this->Twins, this->Components);
 }
 
 std::vector<char> TriangleMesh::Grounded() const

@@ -72,6 +72,9 @@ public:
     return this->IsUsed(v) && this->RingTriangles[this->RingEnd(v) - 1] < 0;
   }
 
+  /// The memory that it holds.
+  std::size_t GetBytes() const;
+
   /// The component of v, numbered from 0 in the order of their first vertices;
   /// -1 for unused vertices.
   int Component(int v) const { return this->Components[v]; }

@@ -137,6 +137,13 @@ DiscreteFormsMorph::DiscreteFormsMorph(const KeyFrames& keys, Transitions transi
   }
 }
 
+std::size_t DiscreteFormsMorph::GetBytes() const
+{
+  return this->Forms.GetBytes() + this->FromMean.GetBytes() + this->Averaging->GetBytes() +
+    this->FrameSystem.GetBytes() + this->Known.GetBytes() +
+    TotalBytes(this->Parameters, this->MeanTransitions, this->Directed);
+}
+
 DiscreteForms DiscreteFormsMorph::FormsAt(double t, const ExecutionContext& context) const
 {
   const Eigen::VectorXd values = this->Forms.Evaluate(t, context);

@@ -57,6 +57,7 @@ public:
 
   int GetNumberOfIterations() const override { return this->Iterations; }
   std::string GetWarning() const override { return this->Warning; }
+  std::size_t GetBytes() const override;
 
 private:
   DiscreteForms FormsAt(double t, const ExecutionContext& context) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Base/Types.h"
 
 #include <cmath>
@@ -36,6 +37,16 @@ public:
     return this->Last.size() && std::abs(this->LastParameter - t) < std::abs(nearest->first - t)
       ? Known{ this->LastParameter, this->Last }
       : Known{ nearest->first, nearest->second };
+  }
+
+  std::size_t GetBytes() const
+  {
+    std::size_t bytes = BytesOf(this->Last);
+    for (const auto& key : this->Keys)
+    {
+      bytes += BytesOf(key.second);
+    }
+    return bytes;
   }
 
 private:

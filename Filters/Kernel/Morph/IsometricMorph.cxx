@@ -221,6 +221,14 @@ void IsometricMorph::SetUpStitching(const ExecutionContext& context)
     this->Topology.Corners, std::move(cornerWeights), this->IsHeld, context.Part(0.5, 1.0));
 }
 
+std::size_t IsometricMorph::GetBytes() const
+{
+  return this->Topology.GetBytes() + this->KeyLengths.GetBytes() + this->KeyAngles.GetBytes() +
+    this->Forest.GetBytes() + this->Stitching.GetBytes() +
+    (this->Averaging ? this->Averaging->GetBytes() : 0) + this->PolishSolver.GetBytes() +
+    this->Known.GetBytes() + BytesOf(this->IsHeld);
+}
+
 Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
 {
   context.Report(0.0);

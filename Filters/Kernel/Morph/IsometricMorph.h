@@ -104,6 +104,7 @@ public:
   /// How many steps the frames took in the last Evaluate.
   int GetNumberOfIterations() const override { return this->FrameSteps; }
   std::string GetWarning() const override { return this->Warning; }
+  std::size_t GetBytes() const override;
 
 private:
   void Interpolate(const std::vector<Points>& keys, std::vector<double> parameters,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Base/Types.h"
 
@@ -43,6 +44,8 @@ public:
 
   const std::vector<double>& GetParameters() const { return this->Parameters; }
   const Field& GetValues() const { return this->Values; }
+
+  std::size_t GetBytes() const { return TotalBytes(this->Parameters, this->Values, this->Slopes); }
 
 private:
   std::vector<double> Parameters;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
 
@@ -35,5 +36,8 @@ public:
 
   /// Warnings about the last result, in sentences; empty if there are none.
   virtual std::string GetWarning() const { return {}; }
+
+  /// The memory that is kept from one parameter to the next, without the mesh.
+  virtual std::size_t GetBytes() const = 0;
 };
 }

@@ -27,6 +27,11 @@ public:
   explicit TriangleGradientMorph(const KeyFrames& keys, const ExecutionContext& context = {});
 
   Points Evaluate(double t, const ExecutionContext& context) override;
+  std::size_t GetBytes() const override
+  {
+    return this->RotationVectors.GetBytes() + this->Corners.GetBytes() +
+      this->Stitching.GetBytes() + BytesOf(this->Frames);
+  }
 
 private:
   std::shared_ptr<const TriangleMesh> Mesh;

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Algebra/CholmodFactor.h"
+
+#ifdef CARTAN_HAVE_CHOLMOD
+#include <cholmod.h>
+#ifdef CARTAN_HAVE_OPENMP
+#include <omp.h>
+#endif
+
+#include <algorithm>
+#include <vector>
+#endif
+
+namespace cartan
+{
+#ifdef CARTAN_HAVE_CHOLMOD
+namespace
+{
+/// CHOLMOD starts OpenMP's threads for the little work around each product of
+/// matrices, which has threads of its own. On few cores they wait for each
+/// other, and the factorization takes up to twice as long, or many times as
+/// long beside other programs.
+class SerialOpenMp
+{
+public:
+#ifdef CARTAN_HAVE_OPENMP
+  SerialOpenMp()
+    : Levels(omp_get_max_active_levels())
+  {
+    omp_set_max_active_levels(0);
+  }
+  ~SerialOpenMp()
+  {
+    omp_set_max_active_levels(this->Levels);
+  }
+  SerialOpenMp(const SerialOpenMp&) = delete;
+  SerialOpenMp& operator=(const SerialOpenMp&) = delete;
+
+private:
+  int Levels;
+#else
+  SerialOpenMp() {}
+#endif
+};
+
+/// CHOLMOD's functions for indices of 32 bits, and of 64.
+struct Narrow
+{
+  using Index = int;
+  static constexpr int Type = CHOLMOD_INT;
+  static constexpr auto Start = cholmod_start;
+  static constexpr auto Finish = cholmod_finish;
+  static constexpr auto Analyze = cholmod_analyze;
+  static constexpr auto CopyFactor = cholmod_copy_factor;
+  static constexpr auto Factorize = cholmod_factorize;
+  static constexpr auto ChangeFactor = cholmod_change_factor;
+  static constexpr auto Solve = cholmod_solve2;
+  static constexpr auto FreeFactor = cholmod_free_factor;
+  static constexpr auto FreeDense = cholmod_free_dense;
+};
+struct Wide
+{
+  using Index = SuiteSparse_long;
+  static constexpr int Type = CHOLMOD_LONG;
+  static constexpr auto Start = cholmod_l_start;
+  static constexpr auto Finish = cholmod_l_finish;
+  static constexpr auto Analyze = cholmod_l_analyze;
+  static constexpr auto CopyFactor = cholmod_l_copy_factor;
+  static constexpr auto Factorize = cholmod_l_factorize;
+  static constexpr auto ChangeFactor = cholmod_l_change_factor;
+  static constexpr auto Solve = cholmod_l_solve2;
+  static constexpr auto FreeFactor = cholmod_l_free_factor;
+  static constexpr auto FreeDense = cholmod_l_free_dense;
+};
+
+/// A matrix as CHOLMOD sees it; wide indices are a copy.
+template <typename Index>
+class View
+{
+public:
+  explicit View(const SparseMatrix& lower)
+  {
+    this->Matrix.nrow = lower.rows();
+    this->Matrix.ncol = lower.cols();
+    this->Matrix.nzmax = lower.nonZeros();
+    if constexpr (std::is_same_v<Index, int>)
+    {
+      this->Matrix.p = const_cast<int*>(lower.outerIndexPtr());
+      this->Matrix.i = const_cast<int*>(lower.innerIndexPtr());
+    }
+    else
+    {
+      this->Outer.assign(lower.outerIndexPtr(), lower.outerIndexPtr() + lower.outerSize() + 1);
+      this->Inner.assign(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
+      this->Matrix.p = this->Outer.data();
+      this->Matrix.i = this->Inner.data();
+    }
+    this->Matrix.x = const_cast<double*>(lower.valuePtr());
+    this->Matrix.stype = -1;
+    this->Matrix.itype = std::is_same_v<Index, int> ? CHOLMOD_INT : CHOLMOD_LONG;
+    this->Matrix.xtype = CHOLMOD_REAL;
+    this->Matrix.dtype = CHOLMOD_DOUBLE;
+    this->Matrix.sorted = 1;
+    this->Matrix.packed = 1;
+  }
+  cholmod_sparse* Get() { return &this->Matrix; }
+
+private:
+  cholmod_sparse Matrix = {};
+  std::vector<Index> Outer;
+  std::vector<Index> Inner;
+};
+
+template <typename Api>
+class Factorization : public CholeskyFactor
+{
+public:
+  explicit Factorization(const FactorLimits& limits)
+    : Limits(limits)
+  {
+    Api::Start(&this->Common);
+    // Errors are reported through return values and become statuses.
+    this->Common.print = 0;
+    this->Common.error_handler = nullptr;
+    this->Common.quick_return_if_not_posdef = 1;
+    // The other orderings it would try save little fill on surfaces and take
+    // longer than the factorization.
+    this->Common.nmethods = 1;
+    this->Common.method[0].ordering = CHOLMOD_AMD;
+    // Small systems too as L L^T: L D L^T would accept matrices that are not
+    // positive.
+    this->Common.final_asis = 0;
+    this->Common.final_ll = 1;
+  }
+  ~Factorization() override
+  {
+    Api::FreeDense(&this->Solution, &this->Common);
+    Api::FreeDense(&this->Work, &this->Common);
+    Api::FreeDense(&this->WorkE, &this->Common);
+    Api::FreeFactor(&this->Factors, &this->Common);
+    Api::FreeFactor(&this->Symbolic, &this->Common);
+    Api::Finish(&this->Common);
+  }
+  Factorization(const Factorization&) = delete;
+  Factorization& operator=(const Factorization&) = delete;
+
+  FactorStatus Analyze(const SparseMatrix& lower) override
+  {
+    Api::FreeFactor(&this->Symbolic, &this->Common);
+    View<typename Api::Index> view(lower);
+    this->Symbolic = Api::Analyze(view.Get(), &this->Common);
+    if (!this->Symbolic || this->Common.status != CHOLMOD_OK)
+    {
+      return this->Status();
+    }
+    this->Entries = static_cast<std::int64_t>(this->Common.lnz);
+    const std::int64_t most =
+      Api::Type == CHOLMOD_INT ? this->Limits.NarrowEntries : this->Limits.Entries;
+    return this->Entries > most ? FactorStatus::TooLarge : FactorStatus::Ok;
+  }
+
+  FactorStatus Factorize(const SparseMatrix& lower) override
+  {
+    Api::FreeFactor(&this->Factors, &this->Common);
+    View<typename Api::Index> view(lower);
+    this->Factors = Api::CopyFactor(this->Symbolic, &this->Common);
+    const SerialOpenMp serial;
+    if (!this->Factors || !Api::Factorize(view.Get(), this->Factors, &this->Common) ||
+      this->Common.status != CHOLMOD_OK)
+    {
+      return this->Status();
+    }
+    // Supernodes make the factorization fast, but the few right-hand sides of a
+    // motion are solved twice as fast by the simplicial factor, which takes four
+    // at a time through memory once. It is smaller, too.
+    return Api::ChangeFactor(CHOLMOD_REAL, 1, 0, 1, 1, this->Factors, &this->Common)
+      ? FactorStatus::Ok
+      : this->Status();
+  }
+
+  FactorStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) override
+  {
+    cholmod_dense view = {};
+    view.nrow = rightHandSide.rows();
+    view.ncol = rightHandSide.cols();
+    view.nzmax = rightHandSide.outerStride() * rightHandSide.cols();
+    view.d = rightHandSide.outerStride();
+    view.x = const_cast<double*>(rightHandSide.data());
+    view.xtype = CHOLMOD_REAL;
+    view.dtype = CHOLMOD_DOUBLE;
+    // The work space is kept: a drag solves the same size again and again.
+    return Api::Solve(CHOLMOD_A, this->Factors, &view, nullptr, &this->Solution, nullptr,
+             &this->Work, &this->WorkE, &this->Common)
+      ? FactorStatus::Ok
+      : this->Status();
+  }
+
+  Eigen::Map<const Eigen::MatrixXd> GetSolution() const override
+  {
+    return { static_cast<const double*>(this->Solution->x),
+      static_cast<Eigen::Index>(this->Solution->nrow),
+      static_cast<Eigen::Index>(this->Solution->ncol) };
+  }
+  std::int64_t GetNumberOfEntries() const override { return this->Entries; }
+  std::size_t GetBytes() const override { return this->Common.memory_inuse; }
+
+private:
+  FactorStatus Status() const
+  {
+    switch (this->Common.status)
+    {
+      case CHOLMOD_NOT_POSDEF:
+      case CHOLMOD_DSMALL:
+        return FactorStatus::NotPositiveDefinite;
+      case CHOLMOD_TOO_LARGE:
+        return FactorStatus::TooLarge;
+      case CHOLMOD_OUT_OF_MEMORY:
+        return FactorStatus::OutOfMemory;
+      default:
+        return FactorStatus::Failed;
+    }
+  }
+
+  FactorLimits Limits;
+  std::int64_t Entries = 0;
+  cholmod_common Common;
+  cholmod_factor* Symbolic = nullptr;
+  cholmod_factor* Factors = nullptr;
+  cholmod_dense* Solution = nullptr;
+  cholmod_dense* Work = nullptr;
+  cholmod_dense* WorkE = nullptr;
+};
+
+/// Begins with narrow indices and goes on with wide ones where these do not
+/// suffice.
+class CholmodFactor : public CholeskyFactor
+{
+public:
+  explicit CholmodFactor(const FactorLimits& limits)
+    : Limits(limits)
+    , Current(std::make_unique<Factorization<Narrow>>(limits))
+  {
+  }
+
+  FactorStatus Analyze(const SparseMatrix& lower) override
+  {
+    if (this->IsWide)
+    {
+      this->Current = std::make_unique<Factorization<Narrow>>(this->Limits);
+      this->IsWide = false;
+    }
+    const FactorStatus status = this->Current->Analyze(lower);
+    return status == FactorStatus::TooLarge ? this->Widen(lower) : status;
+  }
+
+  FactorStatus Factorize(const SparseMatrix& lower) override
+  {
+    FactorStatus status = this->Current->Factorize(lower);
+    // Supernodes take more entries than L has, which the analysis counts.
+    if (status == FactorStatus::TooLarge && !this->IsWide)
+    {
+      status = this->Widen(lower);
+      status = status == FactorStatus::Ok ? this->Current->Factorize(lower) : status;
+    }
+    return status;
+  }
+
+  FactorStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) override
+  {
+    return this->Current->Solve(rightHandSide);
+  }
+  Eigen::Map<const Eigen::MatrixXd> GetSolution() const override
+  {
+    return this->Current->GetSolution();
+  }
+  std::int64_t GetNumberOfEntries() const override { return this->Current->GetNumberOfEntries(); }
+  std::size_t GetBytes() const override { return this->Current->GetBytes(); }
+
+private:
+  FactorStatus Widen(const SparseMatrix& lower)
+  {
+    this->IsWide = true;
+    this->Current = std::make_unique<Factorization<Wide>>(this->Limits);
+    return this->Current->Analyze(lower);
+  }
+
+  FactorLimits Limits;
+  bool IsWide = false;
+  std::unique_ptr<CholeskyFactor> Current;
+};
+}
+#endif
+
+std::unique_ptr<CholeskyFactor> MakeCholmodFactor(const FactorLimits& limits)
+{
+#ifdef CARTAN_HAVE_CHOLMOD
+  return std::make_unique<CholmodFactor>(limits);
+#else
+  static_cast<void>(limits);
+  return nullptr;
+#endif
+}
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Algebra/EigenFactor.h"
+
+#include "Base/Bytes.h"
+
+#include <Eigen/SparseCholesky>
+
+#include <new>
+
+namespace cartan
+{
+namespace
+{
+/// Forward and backward substitution for Count right-hand sides side by side:
+/// the factor, which no cache holds, passes by once instead of Count times.
+template <int Count, typename Lower, typename Permutation>
+void SolveColumns(const Lower& lower, const Permutation& permutation,
+  const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide, Eigen::Index column,
+  Eigen::MatrixXd& solution)
+{
+  using Index = typename Lower::StorageIndex;
+  using Values =
+    Eigen::Matrix<double, Eigen::Dynamic, Count, Count == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+  const auto size = static_cast<Index>(lower.cols());
+  Values values(size, Count);
+  for (Index i = 0; i < size; ++i)
+  {
+    values.row(permutation[i]) = rightHandSide.template block<1, Count>(i, column);
+  }
+  const Index* begin = lower.outerIndexPtr();
+  const Index* row = lower.innerIndexPtr();
+  const double* entry = lower.valuePtr();
+  for (Index j = 0; j < size; ++j)
+  {
+    const Eigen::Matrix<double, 1, Count> value = values.row(j) / entry[begin[j]];
+    values.row(j) = value;
+    for (Index k = begin[j] + 1; k < begin[j + 1]; ++k)
+    {
+      values.row(row[k]) -= entry[k] * value;
+    }
+  }
+  for (Index j = size - 1; j >= 0; --j)
+  {
+    Eigen::Matrix<double, 1, Count> value = values.row(j);
+    for (Index k = begin[j] + 1; k < begin[j + 1]; ++k)
+    {
+      value -= entry[k] * values.row(row[k]);
+    }
+    values.row(j) = value / entry[begin[j]];
+  }
+  for (Index i = 0; i < size; ++i)
+  {
+    solution.template block<1, Count>(i, column) = values.row(permutation[i]);
+  }
+}
+
+/// With indices of one width.
+template <typename Index>
+class Llt : public Eigen::SimplicialLLT<Eigen::SparseMatrix<double, Eigen::ColMajor, Index>>
+{
+public:
+  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
+
+  /// Of L, as analyzed, however many an Index can count.
+  std::int64_t NumberOfEntries() const
+  {
+    return this->m_nonZerosPerCol.template cast<std::int64_t>().sum() + this->rows();
+  }
+
+  FactorStatus Factorize(const Matrix& lower)
+  {
+    this->factorize(lower);
+    return this->info() == Eigen::Success ? FactorStatus::Ok : FactorStatus::NotPositiveDefinite;
+  }
+
+  void SolveAll(
+    const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide, Eigen::MatrixXd& solution) const
+  {
+    const Matrix& lower = this->matrixL().nestedExpression();
+    const auto& permutation = this->permutationP().indices();
+    Eigen::Index column = 0;
+    for (; column + 4 <= rightHandSide.cols(); column += 4)
+    {
+      SolveColumns<4>(lower, permutation, rightHandSide, column, solution);
+    }
+    switch (rightHandSide.cols() - column)
+    {
+      case 3:
+        SolveColumns<3>(lower, permutation, rightHandSide, column, solution);
+        break;
+      case 2:
+        SolveColumns<2>(lower, permutation, rightHandSide, column, solution);
+        break;
+      case 1:
+        SolveColumns<1>(lower, permutation, rightHandSide, column, solution);
+        break;
+      default:
+        break;
+    }
+  }
+
+  std::size_t GetBytes() const
+  {
+    // Beside L: the permutation both ways, the elimination tree, the counts.
+    return this->rows() > 0 ? BytesOf(this->m_matrix) +
+        4 * static_cast<std::size_t>(this->rows()) * sizeof(Index)
+                            : 0;
+  }
+};
+
+/// Calls what may run out of memory.
+template <typename Action>
+FactorStatus Guarded(const Action& action)
+{
+  try
+  {
+    return action();
+  }
+  catch (const std::bad_alloc&)
+  {
+    return FactorStatus::OutOfMemory;
+  }
+}
+
+class EigenFactor : public CholeskyFactor
+{
+public:
+  explicit EigenFactor(const FactorLimits& limits)
+    : Limits(limits)
+  {
+  }
+
+  FactorStatus Analyze(const SparseMatrix& lower) override
+  {
+    this->Wide.reset();
+    this->Narrow = std::make_unique<Llt<int>>();
+    return Guarded(
+      [&]()
+      {
+        this->Narrow->analyzePattern(lower);
+        this->Entries = this->Narrow->NumberOfEntries();
+        if (this->Entries > this->Limits.Entries)
+        {
+          return FactorStatus::OutOfMemory;
+        }
+        if (this->Entries > this->Limits.NarrowEntries)
+        {
+          this->Narrow.reset();
+          this->Wide = std::make_unique<Llt<std::int64_t>>();
+          this->Wide->analyzePattern(WideMatrix(lower));
+        }
+        return FactorStatus::Ok;
+      });
+  }
+
+  FactorStatus Factorize(const SparseMatrix& lower) override
+  {
+    return Guarded([&]()
+      { return this->Wide ? this->Wide->Factorize(lower) : this->Narrow->Factorize(lower); });
+  }
+
+  FactorStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) override
+  {
+    return Guarded(
+      [&]()
+      {
+        this->Solution.resize(rightHandSide.rows(), rightHandSide.cols());
+        this->Wide ? this->Wide->SolveAll(rightHandSide, this->Solution)
+                   : this->Narrow->SolveAll(rightHandSide, this->Solution);
+        return FactorStatus::Ok;
+      });
+  }
+
+  Eigen::Map<const Eigen::MatrixXd> GetSolution() const override
+  {
+    return { this->Solution.data(), this->Solution.rows(), this->Solution.cols() };
+  }
+  std::int64_t GetNumberOfEntries() const override { return this->Entries; }
+  std::size_t GetBytes() const override
+  {
+    return BytesOf(this->Solution) + (this->Narrow ? this->Narrow->GetBytes() : 0) +
+      (this->Wide ? this->Wide->GetBytes() : 0);
+  }
+
+private:
+  using WideMatrix = Llt<std::int64_t>::Matrix;
+
+  FactorLimits Limits;
+  std::int64_t Entries = 0;
+  std::unique_ptr<Llt<int>> Narrow; // one of both, from Analyze on
+  std::unique_ptr<Llt<std::int64_t>> Wide;
+  Eigen::MatrixXd Solution;
+};
+}
+
+std::unique_ptr<CholeskyFactor> MakeEigenFactor(const FactorLimits& limits)
+{
+  return std::make_unique<EigenFactor>(limits);
+}
+}

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/ExecutionContext.h"
+#include "Deformation/HandleProblem.h"
+
+#include <cstddef>
+#include <string>
+
+namespace cartan
+{
+/// A deformation method with everything that survives from one motion to the
+/// next.
+class SurfaceDeformer
+{
+public:
+  virtual ~SurfaceDeformer() = default;
+
+  /// Writes the deformed surface into `result`, whose memory is reused.
+  virtual void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context) = 0;
+
+  /// What the deformer was made for. HandleTargets::Motions has one per Moving
+  /// handle of this one.
+  const HandleProblem& GetProblem() const { return this->Problem; }
+
+  /// Whether a deformer made for `problem` would find the same surfaces, up to
+  /// rounding, when handles that are moving here only are given no motion. By
+  /// default everything must be the same, but for Moving, which may be fewer
+  /// while ConstrainPositions is on. Mesh and Rest are compared as objects.
+  virtual bool Serves(const HandleProblem& problem) const;
+
+  virtual int GetNumberOfFactorizations() const = 0;
+
+  /// What is odd about the last result, in sentences; empty if nothing is.
+  virtual std::string GetWarning() const { return {}; }
+
+  /// The vertices that are solved for.
+  virtual int GetNumberOfFreeVertices() const = 0;
+
+  /// The memory that is kept from motion to motion: factors, fields and the
+  /// problem, without its mesh and rest positions, which others share.
+  virtual std::size_t GetBytes() const = 0;
+
+protected:
+  explicit SurfaceDeformer(HandleProblem problem)
+    : Problem(std::move(problem))
+  {
+  }
+
+  /// Serves() of methods in which a handle at rest is not a pinned one.
+  bool ServesSameMoving(const HandleProblem& problem) const
+  {
+    return SurfaceDeformer::Serves(problem) && this->Problem.Moving == problem.Moving;
+  }
+
+  HandleProblem Problem;
+};
+}
