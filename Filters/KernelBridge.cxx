@@ -479,6 +479,28 @@ Surface ReadSurface(vtkPolyData* input, const std::string& role)
   return surface;
 }
 
+TriangleSoup ReadTriangles(vtkPolyData* input, const std::string& role)
+{
+  RequirePolygons(input, role);
+  CellTriangles cells = Triangulate(input, role);
+  if (cells.CellIds.empty())
+  {
+    throw Error(
+      ErrorCode::BadInput, "The " + role + " has no triangles with three different points.");
+  }
+  TriangleSoup soup;
+  soup.CellIds = std::move(cells.CellIds);
+  soup.Repeated = cells.Repeated;
+  soup.Faces = Eigen::Map<const Triangles>(
+    cells.Corners.data(), static_cast<Eigen::Index>(soup.CellIds.size()), 3);
+  soup.Positions.resize(input->GetNumberOfPoints(), 3);
+  for (vtkIdType v = 0; v < input->GetNumberOfPoints(); ++v)
+  {
+    input->GetPoint(v, soup.Positions.row(v).data());
+  }
+  return soup;
+}
+
 Surface ReadConnectivity(vtkPolyData* input, const std::string& role)
 {
   RequirePolygons(input, role);

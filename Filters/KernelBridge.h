@@ -55,6 +55,19 @@ struct Surface
 /// finite, or the triangles are no oriented manifold.
 Surface ReadSurface(vtkPolyData* input, const std::string& role = "input");
 
+/// The triangles of a surface that need not be a manifold, nor oriented.
+struct TriangleSoup
+{
+  Triangles Faces;                // #T x 3, point ids
+  Points Positions;               // #V x 3, as they are
+  std::vector<long long> CellIds; // the cell that each triangle comes from
+  IdSample Repeated;              // cells with a triangle that names a point twice, left out
+};
+
+/// As ReadSurface, but accepts whatever the triangles are. Throws Error(BadInput)
+/// when there is none, or a cell uses a point that does not exist.
+TriangleSoup ReadTriangles(vtkPolyData* input, const std::string& role = "input");
+
 /// The triangles alone, with all positions at the origin: for filters that do
 /// not look at coordinates and so cannot triangulate. Throws Error(BadInput) as
 /// ReadSurface does, and for polygons that are no triangles.

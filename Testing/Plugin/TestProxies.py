@@ -9,7 +9,7 @@ FILTERS = {
     "DiscreteForms", "FrameReconstruction", "MarkHandle", "RotationInvariantDeformation",
     "ShapePreservingDeformation", "SimilarityDeformation", "AsRigidAsPossibleDeformation",
     "LaplacianDeformation", "PoissonDeformation", "MultiresolutionDeformation",
-    "CurvatureError", "VolumeChange", "SurfaceMorph",
+    "CurvatureError", "VolumeChange", "SurfaceMorph", "PrepareSurface", "RestoreSurface",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 
@@ -122,8 +122,9 @@ sphere = simple.Sphere()
 forms = simple.OutputPort(simple.DiscreteForms(Input=sphere), 1)
 for name in sorted(names):
     inputs = {"Forms": forms} if name == "FrameReconstruction" else {}
-    if servermanager.ProxyManager().GetPrototypeProxy("filters", name).GetProperty("Reference"):
-        inputs["Reference"] = sphere
+    for second in ("Reference", "Original"):
+        if servermanager.ProxyManager().GetPrototypeProxy("filters", name).GetProperty(second):
+            inputs[second] = sphere
     proxy = getattr(simple, name)(Input=sphere, **inputs)
     algorithm = proxy.GetClientSideObject()
     check(algorithm.GetClassName() == "vtk" + name, name + " makes another class")

@@ -346,6 +346,19 @@ RepairedSurface Repair::Finish()
 }
 }
 
+std::vector<std::pair<std::string, int>> RepairCounts::List() const
+{
+  return { { "MergedPoints", this->MergedPoints },
+    { "CollapsedTriangles", this->CollapsedTriangles },
+    { "DoubledTriangles", this->DoubledTriangles }, { "TurnedTriangles", this->TurnedTriangles },
+    { "OneSidedEdges", this->OneSidedEdges }, { "NonManifoldEdges", this->NonManifoldEdges },
+    { "CutPoints", this->CutPoints }, { "CopiedPoints", this->CopiedPoints },
+    { "ReversedComponents", this->ReversedComponents },
+    { "RemovedComponents", this->RemovedComponents }, { "FilledHoles", this->FilledHoles },
+    { "OpenHoles", this->OpenHoles }, { "FillTriangles", this->FillTriangles },
+    { "FlippedEdges", this->FlippedEdges } };
+}
+
 std::string RepairCounts::Describe() const
 {
   std::string text;

@@ -7,6 +7,7 @@
 #include "Mesh/HoleFilling.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cartan
@@ -46,6 +47,9 @@ struct RepairCounts
   int OpenHoles = 0; ///< loops of border edges that are left; counted only when filling
   int FillTriangles = 0;
   int FlippedEdges = 0;
+
+  /// All of them with their names, in this order.
+  std::vector<std::pair<std::string, int>> List() const;
 
   /// One sentence per kind that is not 0; "Nothing was to repair." if all are.
   std::string Describe() const;

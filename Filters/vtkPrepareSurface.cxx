@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPrepareSurface.h"
+
+#include "Bridge/PreparedSurface.h"
+#include "KernelBridge.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+
+vtkStandardNewMacro(vtkPrepareSurface);
+
+static_assert(cartan::LargestHole == 500, "MaximumHoleEdges has this limit");
+
+namespace
+{
+double UsedDiagonal(const cartan::TriangleSoup& soup)
+{
+  Eigen::AlignedBox3d box;
+  for (Eigen::Index corner = 0; corner < soup.Faces.size(); ++corner)
+  {
+    box.extend(soup.Positions.row(soup.Faces.data()[corner]).transpose());
+  }
+  return box.diagonal().norm();
+}
+}
+
+int vtkPrepareSurface::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+  vtkPolyData* output = vtkPolyData::GetData(outputVector);
+  this->Report.clear();
+
+  return cartan::RunGuarded(this,
+    [&]
+    {
+      const cartan::TriangleSoup soup = cartan::ReadTriangles(input);
+      cartan::RepairOptions options;
+      options.MergesPoints = this->MergePoints;
+      options.MergeTolerance =
+        this->Tolerance * (this->ToleranceIsAbsolute ? 1.0 : UsedDiagonal(soup));
+      options.DropsDoubled = this->DropDoubledTriangles;
+      options.Orients = this->OrientConsistently;
+      options.CutsNonManifold = this->CutNonManifold;
+      options.OrientsOutwards = this->OrientOutwards;
+      options.AlternatesNested = this->AlternateNested;
+      options.SmallestComponent = this->MinimumComponentArea;
+      options.Holes.MaximumEdges = this->MaximumHoleEdges;
+      if (this->MaximumHoleLength > 0.0)
+      {
+        options.Holes.MaximumLength = this->MaximumHoleLength;
+      }
+      options.FlipsEdges = this->FlipEdges;
+      options.Flips.MaximumAngle = this->FlipAngle * EIGEN_PI / 180.0;
+
+      cartan::RepairedSurface repaired =
+        cartan::RepairSurface(soup.Positions, soup.Faces, options, cartan::MakeContext(this));
+      repaired.Counts.CollapsedTriangles += static_cast<int>(soup.Repeated.GetCount());
+      cartan::WritePreparedSurface(input, soup, repaired, this->AverageMergedArrays, output);
+      this->Report = repaired.Counts.Describe();
+    });
+}
+
+void vtkPrepareSurface::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "MergePoints: " << this->MergePoints << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "ToleranceIsAbsolute: " << this->ToleranceIsAbsolute << "\n";
+  os << indent << "AverageMergedArrays: " << this->AverageMergedArrays << "\n";
+  os << indent << "DropDoubledTriangles: " << this->DropDoubledTriangles << "\n";
+  os << indent << "OrientConsistently: " << this->OrientConsistently << "\n";
+  os << indent << "CutNonManifold: " << this->CutNonManifold << "\n";
+  os << indent << "OrientOutwards: " << this->OrientOutwards << "\n";
+  os << indent << "AlternateNested: " << this->AlternateNested << "\n";
+  os << indent << "MinimumComponentArea: " << this->MinimumComponentArea << "\n";
+  os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
+  os << indent << "MaximumHoleLength: " << this->MaximumHoleLength << "\n";
+  os << indent << "FlipEdges: " << this->FlipEdges << "\n";
+  os << indent << "FlipAngle: " << this->FlipAngle << "\n";
+  os << indent << "Report: " << this->Report << "\n";
+}
