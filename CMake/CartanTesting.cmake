@@ -12,7 +12,8 @@ if (NOT CARTAN_MESH_DIR)
   mark_as_advanced(CARTAN_MESH_ARCHIVE)
   if (NOT CARTAN_MESH_ARCHIVE)
     message(FATAL_ERROR "The tests and benchmarks need CGAL's example meshes: "
-      "install libcgal-demo, or set CARTAN_MESH_DIR.")
+      "/usr/share/doc/libcgal-dev/data.tar.gz of Debian's package libcgal-demo is not there. "
+      "Run Utilities/bootstrap.sh, which installs it on slim images too, or set CARTAN_MESH_DIR.")
   endif ()
   set(CARTAN_MESH_DIR "${PROJECT_BINARY_DIR}/MeshData")
   if (NOT EXISTS "${CARTAN_MESH_DIR}")
