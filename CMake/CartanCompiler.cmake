@@ -21,13 +21,18 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 
-# For code written here; generated wrappers are not ours to clean up.
+# For code written here; generated wrappers are not ours to clean up. Off for users: a
+# newer compiler has new warnings.
+option(CARTAN_WARNINGS_AS_ERRORS "Refuse code with compiler warnings" OFF)
 if (CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   set(CARTAN_WARNING_FLAGS -Wall -Wextra -Wshadow)
 endif ()
 if (CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # False alarms inside Eigen, at some levels of optimization.
   list(APPEND CARTAN_WARNING_FLAGS -Wno-maybe-uninitialized)
+endif ()
+if (CARTAN_WARNINGS_AS_ERRORS)
+  list(APPEND CARTAN_WARNING_FLAGS -Werror)
 endif ()
 
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
