@@ -102,9 +102,9 @@ public:
   std::size_t GetBytes() const
   {
     // Beside L: the permutation both ways, the elimination tree, the counts.
-    return this->rows() > 0 ? BytesOf(this->m_matrix) +
-        4 * static_cast<std::size_t>(this->rows()) * sizeof(Index)
-                            : 0;
+    return this->rows() > 0
+      ? BytesOf(this->m_matrix) + 4 * static_cast<std::size_t>(this->rows()) * sizeof(Index)
+      : 0;
   }
 };
 
@@ -155,8 +155,8 @@ public:
 
   FactorStatus Factorize(const SparseMatrix& lower) override
   {
-    return Guarded([&]()
-      { return this->Wide ? this->Wide->Factorize(lower) : this->Narrow->Factorize(lower); });
+    return Guarded(
+      [&]() { return this->Wide ? this->Wide->Factorize(lower) : this->Narrow->Factorize(lower); });
   }
 
   FactorStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) override

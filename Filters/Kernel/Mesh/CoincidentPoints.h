@@ -21,8 +21,8 @@ namespace cartan
 /// where distances are near the tolerance. A tolerance below rounding, 1e-15 of
 /// the bounding diagonal, counts as 0.
 ///
-/// The coordinates of points that take part are finite. O(#V log #V) without, O(#V) with a tolerance that is
-/// small against the distances of the points. Throws Error(Aborted).
+/// The coordinates of points that take part are finite. O(#V log #V) without, O(#V) with a
+/// tolerance that is small against the distances of the points. Throws Error(Aborted).
 std::vector<int> FindCoincidentPoints(const Points& points, const std::vector<char>& takesPart,
   double tolerance, const ExecutionContext& context = {});
 }
