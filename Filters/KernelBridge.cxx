@@ -448,7 +448,9 @@ Surface ReadSurface(vtkPolyData* input, const std::string& role)
     }
   }
 
-  const MeshReport report = TriangleMesh::Check(surface.Positions, triangles);
+  MeshReport report;
+  CheckPositions(surface.Positions, triangles, report);
+  surface.Mesh = TriangleMesh::Build(numberOfPoints, std::move(triangles), report);
   if (!report.IsUsable())
   {
     throw Error(
@@ -473,7 +475,6 @@ Surface ReadSurface(vtkPolyData* input, const std::string& role)
       surface.Positions.row(v) -= surface.Origin.transpose();
     }
   }
-  surface.Mesh = TriangleMesh(numberOfPoints, std::move(triangles));
   surface.ReadFrom = { input->GetPoints(), input->GetPolys(), input->GetStrips(),
     input->GetPoints()->GetMTime(), input->GetPolys()->GetMTime(), input->GetStrips()->GetMTime() };
   return surface;
@@ -543,13 +544,13 @@ Surface ReadConnectivity(vtkPolyData* input, const std::string& role)
   surface.Positions = Points::Zero(numberOfPoints, 3);
   Triangles triangles = Eigen::Map<const Triangles>(
     cells.Corners.data(), static_cast<Eigen::Index>(surface.CellIds.size()), 3);
-  const MeshReport report = TriangleMesh::Check(surface.Positions, triangles);
+  MeshReport report;
+  surface.Mesh = TriangleMesh::Build(numberOfPoints, std::move(triangles), report);
   if (!report.IsUsable())
   {
     throw Error(
       ErrorCode::BadInput, "The " + role + " has " + report.DescribeErrors(surface.CellIds));
   }
-  surface.Mesh = TriangleMesh(numberOfPoints, std::move(triangles));
   return surface;
 }
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Mesh/TriangleMesh.h"
 
+#include "Kernel/Base/DisjointSets.h"
+#include "Kernel/Mesh/GrowByRings.h"
 #include "RealMeshes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
-using cartan::ErrorCode;
-using cartan::IdSample;
 using cartan::MeshReport;
 using cartan::Points;
 using cartan::TriangleMesh;
@@ -22,22 +22,9 @@ using shapes::Shape;
 
 namespace
 {
-using Ids = std::vector<long long>;
-
 Triangles MakeTriangles(const std::vector<Eigen::Vector3i>& faces)
 {
   return shapes::ToTriangles(faces);
-}
-
-/// Points in general position: no triangle of them is degenerate.
-Points SomePoints(int count)
-{
-  Points points(count, 3);
-  for (int i = 0; i < count; ++i)
-  {
-    points.row(i) << i, i * i, i * i * i + 1.0;
-  }
-  return points;
 }
 
 /// All that the class promises of its directed edges.
@@ -128,34 +115,72 @@ Shape Fan(int count, bool isClosed)
   return shape;
 }
 
-MeshReport Check(const std::vector<Eigen::Vector3i>& faces, int numberOfPoints)
-{
-  return TriangleMesh::Check(SomePoints(numberOfPoints), MakeTriangles(faces));
-}
+/// What an edge from one vertex to another has on its left, by its ends.
+using LeftTriangles = std::map<std::pair<int, int>, int>;
 
-void ExpectSample(const IdSample& sample, const Ids& ids)
+LeftTriangles FindLeftTriangles(const Triangles& triangles)
 {
-  EXPECT_EQ(sample.GetCount(), ids.size());
-  EXPECT_EQ(sample.GetFirst(),
-    Ids(ids.begin(), ids.begin() + static_cast<long>(std::min(ids.size(), IdSample::Kept))));
-}
-
-/// The constructor must refuse with a sentence that contains all `parts`.
-void ExpectRefused(const std::vector<Eigen::Vector3i>& faces, int numberOfPoints,
-  const std::vector<std::string>& parts)
-{
-  try
+  LeftTriangles left;
+  for (int t = 0; t < triangles.rows(); ++t)
   {
-    TriangleMesh(numberOfPoints, MakeTriangles(faces));
-    FAIL() << "accepted";
-  }
-  catch (const cartan::Error& error)
-  {
-    EXPECT_EQ(error.GetCode(), ErrorCode::BadInput);
-    for (const std::string& part : parts)
+    for (int c = 0; c < 3; ++c)
     {
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
-        << "expected: " << part << "\nfound: " << error.what();
+      left[{ triangles(t, c), triangles(t, (c + 1) % 3) }] = t;
+    }
+  }
+  return left;
+}
+
+/// Numbers the components as the class does, by joining the triangles' corners.
+std::vector<int> FindComponents(int numberOfVertices, const Triangles& triangles)
+{
+  cartan::DisjointSets sets(numberOfVertices);
+  std::vector<char> isUsed(numberOfVertices, 0);
+  for (int t = 0; t < triangles.rows(); ++t)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      sets.Join(triangles(t, c), triangles(t, 0));
+      isUsed[triangles(t, c)] = 1;
+    }
+  }
+  std::map<int, int> numbers;
+  std::vector<int> components(numberOfVertices, -1);
+  for (int v = 0; v < numberOfVertices; ++v)
+  {
+    if (isUsed[v])
+    {
+      components[v] = numbers.emplace(sets.Find(v), static_cast<int>(numbers.size())).first->second;
+    }
+  }
+  return components;
+}
+
+/// Everything against a map of the edges.
+void ExpectEqualToNaive(const Shape& shape)
+{
+  const TriangleMesh mesh = MakeMesh(shape);
+  const LeftTriangles left = FindLeftTriangles(shape.Faces);
+  std::vector<std::set<int>> neighbors(shape.NumberOfVertices());
+  for (const auto& [ends, triangle] : left)
+  {
+    neighbors[ends.first].insert(ends.second);
+    neighbors[ends.second].insert(ends.first);
+  }
+  const std::vector<int> components = FindComponents(shape.NumberOfVertices(), shape.Faces);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    ASSERT_EQ(mesh.Component(v), components[v]);
+    ASSERT_EQ(mesh.Valence(v), static_cast<int>(neighbors[v].size()));
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      const int w = mesh.Neighbor(d);
+      ASSERT_EQ(neighbors[v].count(w), 1u);
+      ASSERT_EQ(mesh.Origin(d), v);
+      ASSERT_EQ(mesh.Neighbor(mesh.Twin(d)), v);
+      ASSERT_EQ(mesh.Origin(mesh.Twin(d)), w);
+      const auto found = left.find({ v, w });
+      ASSERT_EQ(mesh.LeftTriangle(d), found == left.end() ? -1 : found->second);
     }
   }
 }
@@ -264,7 +289,6 @@ TEST(TriangleMesh, AHubOfManyTrianglesHasItsRingInOrder)
       ASSERT_EQ(mesh.Neighbor(mesh.RingBegin(0) + k), 1 + (first - 1 + k) % Count);
     }
     ExpectConsistent(mesh);
-    EXPECT_TRUE(TriangleMesh::Check(fan.Positions, fan.Faces).IsUsable());
   }
 }
 
@@ -320,228 +344,61 @@ TEST(TriangleMesh, TwoTrianglesBackToBackAreClosed)
   EXPECT_EQ(EulerCharacteristic(mesh), 2);
 }
 
-//------------------------------------------------------------------------------
-TEST(MeshReport, FindsNothingOnGoodSurfaces)
+TEST(TriangleMesh, EqualsAConstructionByAMapOfEdges)
 {
-  for (const Shape& shape : { shapes::Icosphere(2), shapes::Plane(4), shapes::Torus(7, 5) })
+  for (const char* name : { "camel", "elephant", "lion-head", "triceratops", "man" })
   {
-    const MeshReport report = TriangleMesh::Check(shape.Positions, shape.Faces);
-    EXPECT_TRUE(report.IsUsable());
-    EXPECT_EQ(report.DescribeErrors(), "");
-    EXPECT_TRUE(report.ZeroArea.IsEmpty());
-    EXPECT_TRUE(report.Unused.IsEmpty());
+    SCOPED_TRACE(name);
+    ExpectEqualToNaive(shapes::RealMesh(name));
   }
+  ExpectEqualToNaive(shapes::Plane(6, 1.0, 0.3, 5));
+  ExpectEqualToNaive(shapes::Union(shapes::OpenCylinder(7, 3), shapes::Icosphere(2)));
 }
 
-TEST(MeshReport, CountsTrianglesOutOfRange)
+TEST(TriangleMesh, BuildTakesGoodTrianglesAndLeavesBadOnes)
 {
-  const MeshReport report = Check({ { 0, 1, 2 }, { 0, 2, 9 }, { -1, 1, 2 } }, 4);
-  ExpectSample(report.OutOfRange, { 1, 2 });
-  EXPECT_FALSE(report.IsUsable());
-  ExpectRefused({ { 0, 1, 2 }, { 0, 2, 9 }, { -1, 1, 2 } }, 4,
-    { "2 triangles (ids 1, 2)", "does not exist", "repair" });
+  Triangles good = MakeTriangles({ { 0, 1, 2 }, { 0, 2, 3 } });
+  MeshReport report;
+  const TriangleMesh mesh = TriangleMesh::Build(5, std::move(good), report);
+  EXPECT_TRUE(report.IsManifold());
+  EXPECT_EQ(report.Unused.GetFirst(), std::vector<long long>({ 4 }));
+  EXPECT_EQ(mesh.NumberOfTriangles(), 2);
+
+  const Triangles bad = MakeTriangles({ { 0, 1, 2 }, { 0, 1, 3 } });
+  Triangles given = bad;
+  EXPECT_EQ(TriangleMesh::Build(5, std::move(given), report).NumberOfVertices(), 0);
+  EXPECT_FALSE(report.IsManifold());
+  EXPECT_EQ(given, bad);
 }
 
-TEST(MeshReport, CountsRepeatedVertices)
+TEST(TriangleMesh, GrowByRingsFindsTheVerticesByTheirDistanceInEdges)
 {
-  const std::vector<Eigen::Vector3i> faces = { { 0, 1, 2 }, { 3, 3, 1 }, { 1, 2, 1 }, { 2, 0, 0 } };
-  ExpectSample(Check(faces, 4).RepeatedVertex, { 1, 2, 3 });
-  ExpectRefused(faces, 4, { "3 triangles (ids 1, 2, 3)", "twice", "remove" });
-}
-
-TEST(MeshReport, CountsEdgesOfMoreThanTwoTriangles)
-{
-  const std::vector<Eigen::Vector3i> faces = { { 2, 5, 0 }, { 5, 2, 1 }, { 2, 5, 3 } };
-  const MeshReport report = Check(faces, 6);
-  ExpectSample(report.NonManifoldEdges, { 2 });
-  EXPECT_TRUE(report.InconsistentEdges.IsEmpty());
-  EXPECT_TRUE(report.NonManifoldVertices.IsEmpty());
-  ExpectRefused(faces, 6, { "1 edge (id 2)", "more than two triangles", "split" });
-}
-
-TEST(MeshReport, CountsInconsistentOrientation)
-{
-  const std::vector<Eigen::Vector3i> faces = { { 0, 1, 2 }, { 0, 1, 3 } };
-  const MeshReport report = Check(faces, 4);
-  ExpectSample(report.InconsistentEdges, { 0 });
-  EXPECT_TRUE(report.NonManifoldEdges.IsEmpty());
-  ExpectRefused(faces, 4, { "1 edge (id 0)", "opposite orientation", "orient" });
-
-  // No orientation of a Moebius strip is consistent.
-  std::vector<Eigen::Vector3i> strip;
-  constexpr int Count = 7;
-  for (int i = 0; i < Count; ++i)
+  const Shape shape = shapes::Union(shapes::Torus(12, 9), shapes::Icosphere(1));
+  const TriangleMesh mesh = MakeMesh(shape);
+  const std::vector<int> seeds = { 5, 40 };
+  // Distances by Bellman and Ford's rounds over all edges.
+  std::vector<int> distance(mesh.NumberOfVertices(), mesh.NumberOfVertices());
+  distance[5] = distance[40] = 0;
+  for (int round = 0; round < mesh.NumberOfVertices(); ++round)
   {
-    const int a = 2 * i;
-    const int b = 2 * i + 1;
-    const int c = i + 1 < Count ? a + 2 : 1;
-    const int d = i + 1 < Count ? b + 2 : 0;
-    strip.emplace_back(a, c, b);
-    strip.emplace_back(b, c, d);
-  }
-  EXPECT_EQ(Check(strip, 2 * Count).InconsistentEdges.GetCount(), 1u);
-}
-
-TEST(MeshReport, CountsBowTies)
-{
-  const std::vector<Eigen::Vector3i> open = { { 0, 1, 2 }, { 2, 3, 4 } };
-  ExpectSample(Check(open, 5).NonManifoldVertices, { 2 });
-  ExpectRefused(open, 5, { "1 point (id 2)", "several fans", "duplicate" });
-
-  // Two tetrahedra that touch in a point: every edge is fine.
-  Shape two = shapes::Union(shapes::Icosphere(1), shapes::Icosphere(1));
-  const int offset = two.NumberOfVertices() / 2;
-  for (Eigen::Index i = 0; i < two.Faces.size(); ++i)
-  {
-    int& id = two.Faces.data()[i];
-    id = id == offset + 3 ? 7 : id;
-  }
-  const MeshReport report = TriangleMesh::Check(two.Positions, two.Faces);
-  ExpectSample(report.NonManifoldVertices, { 7 });
-  ExpectSample(report.Unused, { offset + 3 });
-}
-
-TEST(MeshReport, CountsPointsThatAreNotFinite)
-{
-  Shape shape = shapes::Plane(3);
-  shape.Positions(4, 1) = std::numeric_limits<double>::quiet_NaN();
-  shape.Positions(11, 2) = -std::numeric_limits<double>::infinity();
-  const MeshReport report = TriangleMesh::Check(shape.Positions, shape.Faces);
-  ExpectSample(report.NonFinite, { 4, 11 });
-  EXPECT_FALSE(report.IsUsable());
-  EXPECT_NE(
-    report.DescribeErrors().find("2 points (ids 4, 11) with a NaN or infinite"), std::string::npos);
-}
-
-TEST(MeshReport, DegenerateTrianglesAndUnusedPointsAreNoObstacle)
-{
-  Points points = SomePoints(6);
-  points.row(2) = 0.25 * points.row(0) + 0.75 * points.row(1);
-  points.row(4) = points.row(3);
-  const Triangles faces = MakeTriangles({ { 0, 1, 2 }, { 0, 3, 1 }, { 3, 4, 1 } });
-  const MeshReport report = TriangleMesh::Check(points, faces);
-  ExpectSample(report.ZeroArea, { 0, 2 });
-  ExpectSample(report.Unused, { 5 });
-  EXPECT_TRUE(report.IsUsable());
-  EXPECT_EQ(report.DescribeErrors(), "");
-  EXPECT_NO_THROW(TriangleMesh(6, faces));
-}
-
-TEST(MeshReport, WhetherATriangleHasAreaDoesNotDependOnTheUnit)
-{
-  for (const double unit : { 1e-9, 1.0, 1e6 })
-  {
-    for (const auto& [height, isDegenerate] :
-      std::vector<std::pair<double, bool>>{ { 1e-11, false }, { 1e-13, true }, { 0.0, true } })
+    for (int d = 0; d < mesh.NumberOfDirectedEdges(); ++d)
     {
-      Points points(3, 3);
-      points << 0, 0, 0, 1, 0, 0, 0.3, height, 0;
-      const MeshReport report = TriangleMesh::Check(unit * points, MakeTriangles({ { 0, 1, 2 } }));
-      EXPECT_EQ(report.ZeroArea.GetCount(), isDegenerate ? 1u : 0u) << unit << " " << height;
+      distance[mesh.Neighbor(d)] =
+        std::min(distance[mesh.Neighbor(d)], distance[mesh.Origin(d)] + 1);
     }
   }
-}
-
-TEST(MeshReport, NamesCellsByTheIdsThatTheUserKnows)
-{
-  const MeshReport report = Check({ { 0, 1, 2 }, { 1, 1, 2 } }, 3);
-  EXPECT_NE(report.DescribeErrors({ 70, 80 }).find("1 triangle (id 80)"), std::string::npos);
-}
-
-TEST(MeshReport, KeepsTheFirstFiveIdsAndCountsAll)
-{
-  IdSample sample;
-  EXPECT_TRUE(sample.IsEmpty());
-  for (int i = 0; i < 7; ++i)
+  for (const int rings : { 0, 1, 3, 100 })
   {
-    sample.Add(10 + i);
-  }
-  EXPECT_EQ(sample.Describe("point", "points"), "7 points (ids 10, 11, 12, 13, 14, ...)");
-}
-
-TEST(MeshReport, AgreesWithCountingByHandOnRandomTriangles)
-{
-  // Few points and many triangles: every kind of defect at once.
-  std::mt19937 engine(4);
-  for (int round = 0; round < 300; ++round)
-  {
-    const int numberOfPoints = 4 + static_cast<int>(engine() % 12);
-    std::vector<Eigen::Vector3i> faces;
-    while (faces.size() < static_cast<std::size_t>(2 + round % 14))
+    const std::vector<int> reached = cartan::GrowByRings(mesh, seeds, rings);
+    EXPECT_TRUE(std::is_sorted(
+      reached.begin(), reached.end(), [&](int a, int b) { return distance[a] < distance[b]; }));
+    const std::set<int> found(reached.begin(), reached.end());
+    EXPECT_EQ(found.size(), reached.size());
+    for (int v = 0; v < mesh.NumberOfVertices(); ++v)
     {
-      const Eigen::Vector3i face(static_cast<int>(engine() % numberOfPoints),
-        static_cast<int>(engine() % numberOfPoints), static_cast<int>(engine() % numberOfPoints));
-      if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0])
-      {
-        faces.push_back(face);
-      }
-    }
-
-    std::map<std::pair<int, int>, std::vector<int>> edges; // directions, by end points
-    for (const Eigen::Vector3i& face : faces)
-    {
-      for (int c = 0; c < 3; ++c)
-      {
-        const int a = face[c];
-        const int b = face[(c + 1) % 3];
-        edges[std::minmax(a, b)].push_back(a < b);
-      }
-    }
-    std::size_t nonManifold = 0;
-    std::size_t inconsistent = 0;
-    std::set<int> touched;
-    for (const auto& [ends, directions] : edges)
-    {
-      const bool tooMany = directions.size() > 2;
-      const bool same = directions.size() == 2 && directions[0] == directions[1];
-      nonManifold += tooMany;
-      inconsistent += same;
-      if (tooMany || same)
-      {
-        touched.insert({ ends.first, ends.second });
-      }
-    }
-    // Fans of a vertex without bad edges: its triangles, joined by shared edges.
-    std::size_t bowTies = 0;
-    std::size_t unused = 0;
-    for (int v = 0; v < numberOfPoints; ++v)
-    {
-      std::vector<std::set<int>> fans;
-      for (const Eigen::Vector3i& face : faces)
-      {
-        if ((face.array() == v).any())
-        {
-          std::set<int> fan(face.begin(), face.end());
-          fan.erase(v);
-          for (auto other = fans.begin(); other != fans.end();)
-          {
-            const bool meets =
-              std::any_of(fan.begin(), fan.end(), [&](int w) { return other->count(w) > 0; });
-            if (meets)
-            {
-              fan.insert(other->begin(), other->end());
-            }
-            other = meets ? fans.erase(other) : std::next(other);
-          }
-          fans.push_back(fan);
-        }
-      }
-      unused += fans.empty();
-      bowTies += fans.size() > 1 && !touched.count(v);
-    }
-
-    const MeshReport report = Check(faces, numberOfPoints);
-    ASSERT_EQ(report.NonManifoldEdges.GetCount(), nonManifold) << round;
-    ASSERT_EQ(report.InconsistentEdges.GetCount(), inconsistent) << round;
-    ASSERT_EQ(report.NonManifoldVertices.GetCount(), bowTies) << round;
-    ASSERT_EQ(report.Unused.GetCount(), unused) << round;
-    if (report.IsUsable())
-    {
-      ExpectConsistent(TriangleMesh(numberOfPoints, MakeTriangles(faces)));
-    }
-    else
-    {
-      EXPECT_THROW(TriangleMesh(numberOfPoints, MakeTriangles(faces)), cartan::Error);
+      EXPECT_EQ(found.count(v), distance[v] <= rings ? 1u : 0u) << v;
     }
   }
+  EXPECT_TRUE(cartan::GrowByRings(mesh, {}, 3).empty());
+  EXPECT_EQ(cartan::GrowByRings(mesh, { 7, 7 }, 0), std::vector<int>({ 7 }));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Algebra/Rotation.h"
 
+#include "Base/Constants.h"
+
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -176,11 +178,10 @@ Eigen::Vector3d VectorFromRotation(const Eigen::Matrix3d& rotation)
 
 Eigen::Vector3d VectorFromRotation(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& guess)
 {
-  constexpr double fullTurn = 2.0 * 3.14159265358979323846;
   const Eigen::Vector3d vector = VectorFromRotation(rotation);
   const double angle = vector.norm();
   // No turn has any axis.
   const Eigen::Vector3d axis = angle > 0.0 ? Eigen::Vector3d(vector / angle) : guess.normalized();
-  return (angle + fullTurn * std::round((guess.dot(axis) - angle) / fullTurn)) * axis;
+  return (angle + FullTurn * std::round((guess.dot(axis) - angle) / FullTurn)) * axis;
 }
 }

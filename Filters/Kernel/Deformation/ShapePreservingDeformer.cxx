@@ -2,6 +2,7 @@
 #include "Deformation/ShapePreservingDeformer.h"
 
 #include "Algebra/Rotation.h"
+#include "Base/Constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,6 @@ namespace cartan
 {
 namespace
 {
-constexpr double FullTurn = 2.0 * EIGEN_PI;
 
 /// W_T, the sum over the corners of 1 / (4 + |eta|^2)^2.
 double ConformalWeight(const HandleLaplacian::Triangle& triangle, const Field& eta)

@@ -3,6 +3,7 @@
 
 #include "Algebra/Rotation.h"
 #include "Mesh/Geometry.h"
+#include "Mesh/TriangleShape.h"
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/Hinges.h"
 
+#include "Base/Constants.h"
 #include "Base/DisjointSets.h"
-#include "Mesh/Geometry.h"
+#include "Mesh/TriangleShape.h"
 
 #include <array>
 #include <cmath>
@@ -12,7 +13,6 @@ namespace cartan
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 /// Below this, in radians, angles that should be equal count as such.
 constexpr double AngleTolerance = 1e-6;
 /// What UnwrappedAngles says of creases, in radians and as a cosine.
@@ -246,7 +246,7 @@ Eigen::VectorXd HingeAngles(const HingeTopology& topology, const Points& points,
         const Eigen::Vector3d edge =
           EdgeVector(topology, points, hinge.Left, hinge.LeftCorner).stableNormalized();
         const double angle = std::atan2(left.cross(right).dot(edge), left.dot(right));
-        angles[h] = angle < AngleTolerance - Pi ? angle + 2 * Pi : angle;
+        angles[h] = angle < AngleTolerance - Pi ? angle + FullTurn : angle;
       }
     });
   return angles;
@@ -261,7 +261,7 @@ Eigen::VectorXd UnwrappedAngles(const HingeTopology& topology, const Points& pre
   bool anyTurns = false;
   for (int h = 0; h < count; ++h)
   {
-    turns[h] = std::remainder(angles[h] - previous[h], 2 * Pi);
+    turns[h] = std::remainder(angles[h] - previous[h], FullTurn);
     isTurning[h] = std::abs(turns[h]) > CreaseTurn;
     anyTurns = anyTurns || isTurning[h];
   }
@@ -280,9 +280,9 @@ Eigen::VectorXd UnwrappedAngles(const HingeTopology& topology, const Points& pre
     {
       // Both angles as they are in space: a turn between them misses pi.
       const double before =
-        previous[h] - 2 * Pi * std::ceil((previous[h] - Pi - AngleTolerance) / (2 * Pi));
+        previous[h] - FullTurn * std::ceil((previous[h] - Pi - AngleTolerance) / (FullTurn));
       const int crease = creases.Find(h);
-      excess[crease] += (turns[h] > 0.0 ? turns[h] : turns[h] + 2 * Pi) - Pi;
+      excess[crease] += (turns[h] > 0.0 ? turns[h] : turns[h] + FullTurn) - Pi;
       direct[crease] += angles[h] - before;
       ++members[crease];
     }
@@ -296,7 +296,7 @@ Eigen::VectorXd UnwrappedAngles(const HingeTopology& topology, const Points& pre
       const bool isPositive = isTie ? direct[crease] >= 0.0 : excess[crease] < 0.0;
       if (isPositive != (turns[h] > 0.0))
       {
-        turns[h] += isPositive ? 2 * Pi : -2 * Pi;
+        turns[h] += isPositive ? FullTurn : -FullTurn;
       }
     }
   }

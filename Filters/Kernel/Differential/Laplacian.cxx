@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/Laplacian.h"
 
-#include "Mesh/Geometry.h"
+#include "Mesh/TriangleShape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,13 +27,12 @@ Contribution TriangleContribution(LaplacianWeights weights, const Eigen::Vector3
   }
   const double longestSquared = LongestEdgeSquared(p, q, r);
   const double twiceArea = (q - p).cross(r - p).norm();
-  const bool hasArea = HasArea(twiceArea, longestSquared);
   if (weights == LaplacianWeights::Cotangent)
   {
-    const double cotangent = hasArea ? (p - r).dot(q - r) / twiceArea : 1.0 / std::sqrt(3.0);
-    return { 0.5 * cotangent, 0.5 * cotangent };
+    const double half = 0.5 * Cotangent((p - r).dot(q - r), twiceArea, longestSquared);
+    return { half, half };
   }
-  if (!hasArea)
+  if (!HasArea(twiceArea, longestSquared))
   {
     const double equilateral = longestSquared > 0.0 ? 1.0 / std::sqrt(3.0 * longestSquared) : 0.0;
     return { equilateral, equilateral };

@@ -4,6 +4,7 @@
 #include "Algebra/Rotation.h"
 #include "Differential/Laplacian.h"
 #include "Mesh/Geometry.h"
+#include "Mesh/TriangleShape.h"
 
 #include <Eigen/Geometry>
 
@@ -58,21 +59,6 @@ Eigen::Vector3d AreaVector(
   const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
 {
   return 0.5 * (b - a).cross(c - a);
-}
-
-/// The cotangents at the corners of a triangle; those of an equilateral one
-/// where the angles drown in rounding (the limit of TriangleMesh::Check).
-Eigen::Vector3d Cotangents(
-  const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
-{
-  const double twiceArea = (b - a).cross(c - a).norm();
-  const double longest =
-    std::max({ (b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm() });
-  if (!(twiceArea > 1e-12 * longest))
-  {
-    return Eigen::Vector3d::Constant(1.0 / std::sqrt(3.0));
-  }
-  return Eigen::Vector3d((b - a).dot(c - a), (c - b).dot(a - b), (a - c).dot(b - c)) / twiceArea;
 }
 }
 

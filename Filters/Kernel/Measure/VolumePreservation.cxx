@@ -2,6 +2,7 @@
 #include "Measure/VolumePreservation.h"
 
 #include "Algebra/ConstrainedSolver.h"
+#include "Base/Constants.h"
 #include "Differential/Curvature.h"
 #include "Differential/Laplacian.h"
 #include "Measure/Measures.h"
@@ -22,7 +23,7 @@ constexpr int RaysAround = 6;
 double MeanDepth(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
   const Points& areaVectors, double offset, const RayCaster& castRay)
 {
-  const double halfAngle = 15.0 * EIGEN_PI / 180.0;
+  const double halfAngle = 15.0 * Pi / 180.0;
   const Eigen::Vector3d side = normal.unitOrthogonal();
   const Eigen::Vector3d other = normal.cross(side);
   double sum = 0.0;
@@ -32,7 +33,7 @@ double MeanDepth(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
     Eigen::Vector3d direction = -normal;
     if (ray > 0)
     {
-      const double turn = 2.0 * EIGEN_PI * ray / RaysAround;
+      const double turn = FullTurn * ray / RaysAround;
       direction = -std::cos(halfAngle) * normal +
         std::sin(halfAngle) * (std::cos(turn) * side + std::sin(turn) * other);
     }

@@ -4,24 +4,8 @@
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
 
-#include <algorithm>
-
 namespace cartan
 {
-/// Whether a triangle with this squared longest edge has a normal and angles
-/// that rounding leaves intact: its height over the longest edge is above 1e-12
-/// of that edge.
-inline bool HasArea(double twiceArea, double longestEdgeSquared)
-{
-  return twiceArea > 1e-12 * longestEdgeSquared;
-}
-
-inline double LongestEdgeSquared(
-  const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
-{
-  return std::max({ (b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm() });
-}
-
 /// Twice the area times the unit normal of each triangle, by the right-hand
 /// rule: #T x 3.
 Points TriangleAreaVectors(

@@ -2,7 +2,7 @@
 #include "Mesh/HoleFilling.h"
 
 #include "Mesh/EdgeTable.h"
-#include "Mesh/Geometry.h"
+#include "Mesh/TriangleShape.h"
 
 #include <algorithm>
 #include <array>

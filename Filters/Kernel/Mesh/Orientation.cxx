@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/Orientation.h"
 
+#include "Base/Constants.h"
 #include "Base/DisjointSets.h"
 #include "Mesh/EdgeTable.h"
 #include "Mesh/Geometry.h"
@@ -119,7 +120,7 @@ double WindingNumber(const Component& component, const Triangles& triangles, con
     halfAngle +=
       std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return halfAngle / (2.0 * EIGEN_PI);
+  return halfAngle / FullTurn;
 }
 
 /// Whether `outer` winds an odd number of times around `inner`. Where they touch

@@ -2,42 +2,16 @@
 #include "Mesh/TriangleMesh.h"
 
 #include "Base/Bytes.h"
-#include "Mesh/Geometry.h"
+#include "Base/FloodFill.h"
 
-#include <limits>
+#include <algorithm>
 
 namespace cartan
 {
 namespace
 {
-/// The corners of all triangles, grouped by vertex with a counting sort. Corner
-/// 3 t + c is vertex c of triangle t.
-struct CornersByVertex
-{
-  CornersByVertex(int numberOfVertices, const Triangles& triangles)
-    : Offsets(numberOfVertices + 1, 0)
-    , Corners(triangles.size())
-  {
-    for (Eigen::Index corner = 0; corner < triangles.size(); ++corner)
-    {
-      ++this->Offsets[triangles.data()[corner] + 1];
-    }
-    for (int v = 0; v < numberOfVertices; ++v)
-    {
-      this->Offsets[v + 1] += this->Offsets[v];
-    }
-    std::vector<int> cursor(this->Offsets.begin(), this->Offsets.end() - 1);
-    for (Eigen::Index corner = 0; corner < triangles.size(); ++corner)
-    {
-      this->Corners[cursor[triangles.data()[corner]]++] = static_cast<int>(corner);
-    }
-  }
-
-  std::vector<int> Offsets; // #V + 1
-  std::vector<int> Corners; // 3 #T
-};
-
-/// The two vertices that follow a corner's vertex in its triangle.
+/// Corner 3 t + c is vertex c of triangle t. These are the two vertices that
+/// follow a corner's vertex in its triangle.
 int FirstAfter(const Triangles& triangles, int corner)
 {
   return triangles.data()[corner % 3 == 2 ? corner - 2 : corner + 1];
@@ -47,6 +21,33 @@ int SecondAfter(const Triangles& triangles, int corner)
   return triangles.data()[corner % 3 == 0 ? corner + 2 : corner - 1];
 }
 
+/// The corners of each vertex as a list: `last` (#V) has its last corner, and
+/// `before` (3 #T) for each corner the one before it; -1 where there is none.
+void ListCorners(
+  const Triangles& triangles, std::vector<int>& last, std::vector<int>& before, MeshReport& report)
+{
+  const int numberOfVertices = static_cast<int>(last.size());
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+  {
+    const auto corners = triangles.row(t);
+    if (corners.minCoeff() < 0 || corners.maxCoeff() >= numberOfVertices)
+    {
+      report.OutOfRange.Add(t);
+      continue;
+    }
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+    {
+      report.RepeatedVertex.Add(t);
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+      const int corner = static_cast<int>(3 * t) + c;
+      before[corner] = last[corners[c]];
+      last[corners[c]] = corner;
+    }
+  }
+}
+
 /// Walks the fan of triangles around one vertex after the other. The scratch
 /// array makes each vertex cost its valence, however large, without hashing.
 class FanWalker
@@ -54,316 +55,234 @@ class FanWalker
 public:
   FanWalker(int numberOfVertices, const Triangles& triangles)
     : Mesh(triangles)
-    , Sorted(numberOfVertices, triangles)
-    , CornerByFirst(numberOfVertices, -1)
-    , IsSecond(numberOfVertices, 0)
+    , Ends(numberOfVertices)
   {
   }
 
-  int CornerCount(int v) const { return this->Sorted.Offsets[v + 1] - this->Sorted.Offsets[v]; }
-
-  /// Puts the corners of v into counter-clockwise order, from the boundary edge
-  /// with a triangle on its left, else from the first triangle. The fan is
-  /// shorter than CornerCount(v) when the triangles form several fans or an
-  /// edge is used twice in one direction.
-  void Walk(int v, std::vector<int>& fan, bool& isBoundary)
+  /// Puts the corners of v, a list that ends with `last`, into counter-clockwise
+  /// order, from the boundary edge with a triangle on its left, else from the
+  /// first triangle. Adds to `report` the edges from v to larger vertices that
+  /// have more than two triangles or two of the same direction, or v itself
+  /// where its triangles are several fans. GetFan() means nothing then.
+  void Walk(int v, int last, const std::vector<int>& before, MeshReport& report)
   {
-    const int begin = this->Sorted.Offsets[v];
-    const int end = this->Sorted.Offsets[v + 1];
-    for (int i = begin; i < end; ++i)
+    this->Unsorted.clear();
+    for (int corner = last; corner >= 0; corner = before[corner])
     {
-      const int corner = this->Sorted.Corners[i];
-      this->CornerByFirst[FirstAfter(this->Mesh, corner)] = corner;
-      this->IsSecond[SecondAfter(this->Mesh, corner)] = 1;
+      this->Unsorted.push_back(corner);
     }
-    int start = this->Sorted.Corners[begin];
-    isBoundary = false;
-    for (int i = begin; i < end && !isBoundary; ++i)
+    std::reverse(this->Unsorted.begin(), this->Unsorted.end());
+    for (const int corner : this->Unsorted)
     {
-      const int corner = this->Sorted.Corners[i];
-      if (!this->IsSecond[FirstAfter(this->Mesh, corner)])
-      {
-        start = corner;
-        isBoundary = true;
-      }
+      End& first = this->Ends[FirstAfter(this->Mesh, corner)];
+      End& second = this->Ends[SecondAfter(this->Mesh, corner)];
+      first.Corner = corner;
+      first.Outgoing = Counted(first.Outgoing);
+      second.Incoming = Counted(second.Incoming);
     }
-    fan.clear();
-    for (int corner = start; corner >= 0 && static_cast<int>(fan.size()) < end - begin;)
+    this->Order();
+    if (!this->CheckEdges(v, report) && this->Fan.size() != this->Unsorted.size())
     {
-      fan.push_back(corner);
-      corner = this->CornerByFirst[SecondAfter(this->Mesh, corner)];
+      report.NonManifoldVertices.Add(v);
+    }
+  }
+
+  const std::vector<int>& GetFan() const { return this->Fan; }
+  bool IsBoundary() const { return this->IsOpen; }
+
+private:
+  /// The edge to a neighbor of the vertex in question, as its triangles have it.
+  struct End
+  {
+    int Corner = -1;            // of the triangle on the edge's left
+    unsigned char Outgoing = 0; // triangles that run through it from the vertex, up to 3
+    unsigned char Incoming = 0; // and towards it
+  };
+
+  static unsigned char Counted(unsigned char count)
+  {
+    return static_cast<unsigned char>(std::min(count + 1, 3));
+  }
+
+  void Order()
+  {
+    const auto open = std::find_if(this->Unsorted.begin(), this->Unsorted.end(),
+      [this](int corner) { return !this->Ends[FirstAfter(this->Mesh, corner)].Incoming; });
+    this->IsOpen = open != this->Unsorted.end();
+    const int start = this->IsOpen ? *open : this->Unsorted.front();
+    this->Fan.clear();
+    for (int corner = start; corner >= 0 && this->Fan.size() < this->Unsorted.size();)
+    {
+      this->Fan.push_back(corner);
+      corner = this->Ends[SecondAfter(this->Mesh, corner)].Corner;
       if (corner == start)
       {
         break;
       }
     }
-    for (int i = begin; i < end; ++i)
-    {
-      const int corner = this->Sorted.Corners[i];
-      this->CornerByFirst[FirstAfter(this->Mesh, corner)] = -1;
-      this->IsSecond[SecondAfter(this->Mesh, corner)] = 0;
-    }
   }
 
-  const CornersByVertex& GetSorted() const { return this->Sorted; }
-
-private:
-  const Triangles& Mesh;
-  CornersByVertex Sorted;
-  std::vector<int> CornerByFirst; // #V, -1 outside of Walk
-  std::vector<char> IsSecond;     // #V, 0 outside of Walk
-};
-
-/// Counts, for each edge once (at its smaller vertex), its triangles and their
-/// directions. Returns the vertices that touch a defective edge.
-std::vector<char> CheckEdges(
-  const CornersByVertex& sorted, const Triangles& triangles, MeshReport& report)
-{
-  const int numberOfVertices = static_cast<int>(sorted.Offsets.size()) - 1;
-  std::vector<char> touched(numberOfVertices, 0);
-  std::vector<int> outgoing(numberOfVertices, 0);
-  std::vector<int> incoming(numberOfVertices, 0);
-  for (int v = 0; v < numberOfVertices; ++v)
+  /// Reports each bad edge once, at its smaller vertex, and clears the scratch
+  /// array. Returns whether there is one at v.
+  bool CheckEdges(int v, MeshReport& report)
   {
-    for (int i = sorted.Offsets[v]; i < sorted.Offsets[v + 1]; ++i)
+    bool isAnyBad = false;
+    for (const int corner : this->Unsorted)
     {
-      ++outgoing[FirstAfter(triangles, sorted.Corners[i])];
-      ++incoming[SecondAfter(triangles, sorted.Corners[i])];
-    }
-    for (int i = sorted.Offsets[v]; i < sorted.Offsets[v + 1]; ++i)
-    {
-      for (const int w :
-        { FirstAfter(triangles, sorted.Corners[i]), SecondAfter(triangles, sorted.Corners[i]) })
+      for (const int w : { FirstAfter(this->Mesh, corner), SecondAfter(this->Mesh, corner) })
       {
-        const int total = outgoing[w] + incoming[w];
-        if (total > 2 || outgoing[w] == 2 || incoming[w] == 2)
+        const End end = this->Ends[w];
+        const int total = end.Outgoing + end.Incoming;
+        if (total > 2 || end.Outgoing == 2 || end.Incoming == 2)
         {
-          touched[v] = 1;
+          isAnyBad = true;
           if (v < w)
           {
             (total > 2 ? report.NonManifoldEdges : report.InconsistentEdges).Add(v);
           }
         }
-        outgoing[w] = incoming[w] = 0;
+        this->Ends[w] = {};
       }
     }
+    return isAnyBad;
   }
-  return touched;
+
+  const Triangles& Mesh;
+  std::vector<End> Ends; // #V, cleared outside of Walk
+  std::vector<int> Unsorted;
+  std::vector<int> Fan;
+  bool IsOpen = false;
+};
 }
 
-void CheckTopology(int numberOfVertices, const Triangles& triangles, MeshReport& report)
+TriangleMesh TriangleMesh::Build(int numberOfVertices, Triangles&& triangles, MeshReport& report)
 {
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+  if (triangles.rows() > MostTriangles)
   {
-    const auto corners = triangles.row(t);
-    if (corners.minCoeff() < 0 || corners.maxCoeff() >= numberOfVertices)
-    {
-      report.OutOfRange.Add(t);
-    }
-    else if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
-    {
-      report.RepeatedVertex.Add(t);
-    }
+    report.TooManyTriangles = triangles.rows();
+    return {};
   }
-  if (!report.OutOfRange.IsEmpty() || !report.RepeatedVertex.IsEmpty())
+  std::vector<int> lastCorners(numberOfVertices, -1);
+  std::vector<int> corners(triangles.size());
+  ListCorners(triangles, lastCorners, corners, report);
+  TriangleMesh mesh;
+  if (report.OutOfRange.IsEmpty() && report.RepeatedVertex.IsEmpty())
   {
-    return;
+    mesh.MakeRings(corners, lastCorners, triangles, report);
   }
-  FanWalker walker(numberOfVertices, triangles);
-  const std::vector<char> touched = CheckEdges(walker.GetSorted(), triangles, report);
-  std::vector<int> fan;
-  bool isBoundary = false;
-  for (int v = 0; v < numberOfVertices; ++v)
+  if (!report.IsManifold())
   {
-    if (walker.CornerCount(v) == 0)
-    {
-      report.Unused.Add(v);
-    }
-    else if (!touched[v])
-    {
-      walker.Walk(v, fan, isBoundary);
-      if (static_cast<int>(fan.size()) != walker.CornerCount(v))
-      {
-        report.NonManifoldVertices.Add(v);
-      }
-    }
+    return {};
   }
-}
-
-void CheckGeometry(const Points& points, const Triangles& triangles, MeshReport& report)
-{
-  for (Eigen::Index v = 0; v < points.rows(); ++v)
-  {
-    if (!points.row(v).allFinite())
-    {
-      report.NonFinite.Add(v);
-    }
-  }
-  if (!report.OutOfRange.IsEmpty())
-  {
-    return;
-  }
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
-  {
-    const Eigen::Vector3d a = points.row(triangles(t, 0));
-    const Eigen::Vector3d b = points.row(triangles(t, 1));
-    const Eigen::Vector3d c = points.row(triangles(t, 2));
-    if (!HasArea((b - a).cross(c - a).norm(), LongestEdgeSquared(a, b, c)))
-    {
-      report.ZeroArea.Add(t);
-    }
-  }
-}
-}
-
-bool MeshReport::IsUsable() const
-{
-  return this->OutOfRange.IsEmpty() && this->RepeatedVertex.IsEmpty() &&
-    this->NonManifoldEdges.IsEmpty() && this->InconsistentEdges.IsEmpty() &&
-    this->NonManifoldVertices.IsEmpty() && this->NonFinite.IsEmpty();
-}
-
-std::string MeshReport::DescribeErrors(const std::vector<long long>& cellIds) const
-{
-  std::string text;
-  const auto add = [&text](const IdSample& sample, const char* singular, const char* plural,
-                     const std::string& problem)
-  {
-    if (!sample.IsEmpty())
-    {
-      text += (text.empty() ? "" : " ") + sample.Describe(singular, plural) + problem;
-    }
-  };
-  add(this->OutOfRange.Renamed(cellIds), "triangle", "triangles",
-    " using a point that does not exist: repair the cells.");
-  add(this->RepeatedVertex.Renamed(cellIds), "triangle", "triangles",
-    " using a point twice: remove them, for example with the Clean filter.");
-  add(this->NonFinite, "point", "points",
-    " with a NaN or infinite coordinate: repair or remove them.");
-  add(this->NonManifoldEdges, "edge", "edges",
-    " with more than two triangles, ids of the first end points: split the surface there or "
-    "remove the extra triangles.");
-  add(this->InconsistentEdges, "edge", "edges",
-    " between triangles of opposite orientation, ids of the first end points: orient the surface "
-    "consistently, for example with Surface Normals (Consistency on).");
-  add(this->NonManifoldVertices, "point", "points",
-    " where several fans of triangles meet: duplicate these points, one for each fan.");
-  return text;
-}
-
-MeshReport TriangleMesh::Check(const Points& points, const Triangles& triangles)
-{
-  MeshReport report;
-  CheckTopology(static_cast<int>(points.rows()), triangles, report);
-  CheckGeometry(points, triangles, report);
-  return report;
+  mesh.MakeTwins(corners);
+  mesh.FindComponents();
+  mesh.Corners = std::move(triangles);
+  return mesh;
 }
 
 TriangleMesh::TriangleMesh(int numberOfVertices, Triangles triangles)
-  : Corners(std::move(triangles))
 {
-  // A triangle has three edges of two directions each when none is shared.
-  if (this->Corners.rows() > std::numeric_limits<int>::max() / 6)
-  {
-    throw Error(ErrorCode::BadInput,
-      "The surface has " + std::to_string(this->Corners.rows()) + " triangles; at most " +
-        std::to_string(std::numeric_limits<int>::max() / 6) +
-        " are supported: decimate or split it.");
-  }
   MeshReport report;
-  CheckTopology(numberOfVertices, this->Corners, report);
-  if (!report.IsUsable())
+  *this = Build(numberOfVertices, std::move(triangles), report);
+  if (!report.IsManifold())
   {
     throw Error(ErrorCode::BadInput, report.DescribeErrors());
   }
+}
 
+MeshReport TriangleMesh::Check(const Points& points, Triangles triangles)
+{
+  MeshReport report;
+  CheckPositions(points, triangles, report);
+  Build(static_cast<int>(points.rows()), std::move(triangles), report);
+  return report;
+}
+
+/// While a vertex's ring is made, its corners' places in `corners` turn from a
+/// list into the directed edges that leave from them, and RingTriangles holds
+/// corners, for MakeTwins.
+void TriangleMesh::MakeRings(std::vector<int>& corners, const std::vector<int>& lastCorners,
+  const Triangles& triangles, MeshReport& report)
+{
+  const int numberOfVertices = static_cast<int>(lastCorners.size());
   this->RingOffsets.assign(1, 0);
-  this->RingOffsets.reserve(numberOfVertices + 1);
-  this->Neighbors.reserve(this->Corners.size());
-  this->RingTriangles.reserve(this->Corners.size());
-  FanWalker walker(numberOfVertices, this->Corners);
-  std::vector<int> fan;
+  this->RingOffsets.reserve(static_cast<std::size_t>(numberOfVertices) + 1);
+  this->Neighbors.reserve(triangles.size());
+  this->RingTriangles.reserve(triangles.size());
+  FanWalker walker(numberOfVertices, triangles);
   for (int v = 0; v < numberOfVertices; ++v)
   {
-    if (walker.CornerCount(v) > 0)
+    if (lastCorners[v] < 0)
     {
-      bool isBoundary = false;
-      walker.Walk(v, fan, isBoundary);
-      for (const int corner : fan)
+      report.Unused.Add(v);
+    }
+    else
+    {
+      walker.Walk(v, lastCorners[v], corners, report);
+      for (const int corner : walker.GetFan())
       {
-        this->Neighbors.push_back(FirstAfter(this->Corners, corner));
-        this->RingTriangles.push_back(corner / 3);
+        corners[corner] = this->NumberOfDirectedEdges();
+        this->Neighbors.push_back(FirstAfter(triangles, corner));
+        this->RingTriangles.push_back(corner);
       }
-      if (isBoundary)
+      if (walker.IsBoundary())
       {
-        this->Neighbors.push_back(SecondAfter(this->Corners, fan.back()));
+        this->Neighbors.push_back(SecondAfter(triangles, walker.GetFan().back()));
         this->RingTriangles.push_back(-1);
       }
     }
-    this->RingOffsets.push_back(static_cast<int>(this->Neighbors.size()));
+    this->RingOffsets.push_back(this->NumberOfDirectedEdges());
   }
+  this->Neighbors.shrink_to_fit();
+  this->RingTriangles.shrink_to_fit();
+}
 
-  // Twins: group the directed edges by where they end; then, vertex by vertex,
-  // meet them with the outgoing ones through a scratch array.
-  const int numberOfDirectedEdges = this->NumberOfDirectedEdges();
-  std::vector<int> incomingOffsets(numberOfVertices + 1, 0);
-  for (const int neighbor : this->Neighbors)
+/// The twin of v -> w leaves from w's corner in the triangle on the right, which
+/// is the one before v's; without a triangle there it is the last edge of w.
+void TriangleMesh::MakeTwins(const std::vector<int>& edgeOfCorner)
+{
+  this->Twins.resize(this->Neighbors.size());
+  for (int v = 0; v < this->NumberOfVertices(); ++v)
   {
-    ++incomingOffsets[neighbor + 1];
-  }
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
-    incomingOffsets[v + 1] += incomingOffsets[v];
-  }
-  std::vector<int> incoming(numberOfDirectedEdges);
-  std::vector<int> incomingOrigin(numberOfDirectedEdges);
-  std::vector<int> cursor(incomingOffsets.begin(), incomingOffsets.end() - 1);
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
+    int previous = this->IsUsed(v) ? this->RingTriangles[this->RingEnd(v) - 1] : -1;
     for (int d = this->RingBegin(v); d < this->RingEnd(v); ++d)
     {
-      const int slot = cursor[this->Neighbors[d]]++;
-      incoming[slot] = d;
-      incomingOrigin[slot] = v;
+      const int twinCorner = previous % 3 == 0 ? previous + 2 : previous - 1;
+      this->Twins[d] =
+        previous < 0 ? this->RingEnd(this->Neighbors[d]) - 1 : edgeOfCorner[twinCorner];
+      previous = this->RingTriangles[d];
     }
   }
-  this->Twins.resize(numberOfDirectedEdges);
-  std::vector<int> outgoing(numberOfVertices, -1);
-  for (int v = 0; v < numberOfVertices; ++v)
+  for (int& corner : this->RingTriangles)
   {
-    for (int d = this->RingBegin(v); d < this->RingEnd(v); ++d)
-    {
-      outgoing[this->Neighbors[d]] = d;
-    }
-    for (int slot = incomingOffsets[v]; slot < incomingOffsets[v + 1]; ++slot)
-    {
-      this->Twins[incoming[slot]] = outgoing[incomingOrigin[slot]];
-    }
+    corner = corner < 0 ? -1 : corner / 3;
   }
+}
 
-  this->Components.assign(numberOfVertices, -1);
-  std::vector<int> stack;
-  for (int seed = 0; seed < numberOfVertices; ++seed)
+void TriangleMesh::FindComponents()
+{
+  this->Components.assign(this->NumberOfVertices(), -1);
+  for (int seed = 0; seed < this->NumberOfVertices(); ++seed)
   {
     if (!this->IsUsed(seed) || this->Components[seed] >= 0)
     {
       continue;
     }
-    this->Components[seed] = this->ComponentCount;
-    stack.push_back(seed);
-    while (!stack.empty())
-    {
-      const int v = stack.back();
-      stack.pop_back();
-      for (int d = this->RingBegin(v); d < this->RingEnd(v); ++d)
+    FloodFill(
+      { seed },
+      [this](int v)
       {
-        if (this->Components[this->Neighbors[d]] < 0)
+        const bool isNew = this->Components[v] < 0;
+        this->Components[v] = isNew ? this->ComponentCount : this->Components[v];
+        return isNew;
+      },
+      [this](int v, const auto& reach)
+      {
+        for (int d = this->RingBegin(v); d < this->RingEnd(v); ++d)
         {
-          this->Components[this->Neighbors[d]] = this->ComponentCount;
-          stack.push_back(this->Neighbors[d]);
+          reach(this->Neighbors[d]);
         }
-      }
-    }
+      });
     ++this->ComponentCount;
   }
 }

@@ -1,35 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Base/Error.h"
 #include "Base/Types.h"
+#include "Mesh/MeshCheck.h"
 
-#include <string>
+#include <limits>
 #include <vector>
 
 namespace cartan
 {
-/// What is wrong with a mesh: for each defect how many and the first ids.
-/// Point ids are rows of Points, triangle ids are rows of Triangles.
-struct MeshReport
-{
-  IdSample OutOfRange;          ///< triangles that name a vertex that is not there
-  IdSample RepeatedVertex;      ///< triangles that name a vertex twice
-  IdSample NonManifoldEdges;    ///< edges of more than two triangles; the smaller end point's id
-  IdSample InconsistentEdges;   ///< edges that both triangles run through in the same direction
-  IdSample NonManifoldVertices; ///< vertices whose triangles do not form one fan
-  IdSample NonFinite;           ///< points with a NaN or infinite coordinate
-  IdSample ZeroArea;            ///< triangles without area: degenerate, but no obstacle
-  IdSample Unused;              ///< points in no triangle: no obstacle
-
-  /// Whether TriangleMesh accepts the triangles and all coordinates are finite.
-  bool IsUsable() const;
-
-  /// One sentence per obstacle with count, first ids and what to do; empty when
-  /// usable. `cellIds` maps triangles to the ids the user knows (may be empty).
-  std::string DescribeErrors(const std::vector<long long>& cellIds = {}) const;
-};
-
 /// The connectivity of an oriented triangle mesh that is a 2-manifold, possibly
 /// with boundary, in several components, and with unused vertices.
 ///
@@ -44,13 +23,21 @@ class TriangleMesh
 public:
   TriangleMesh() = default;
 
-  /// O(#V + #T). Throws Error(BadInput) with MeshReport::DescribeErrors() when
-  /// the triangles are not an oriented manifold.
+  /// A triangle has three edges of two directions each when none is shared, and
+  /// directed edges are numbered with int.
+  static constexpr int MostTriangles = std::numeric_limits<int>::max() / 6;
+
+  /// Makes the mesh and adds all that is wrong with the triangles to `report`,
+  /// in one sort of the corners and one walk around each vertex. Where
+  /// report.IsManifold() is false afterwards the mesh is empty and `triangles`
+  /// are still there. O(#V + #T).
+  static TriangleMesh Build(int numberOfVertices, Triangles&& triangles, MeshReport& report);
+
+  /// The same, but throws Error(BadInput) with MeshReport::DescribeErrors().
   TriangleMesh(int numberOfVertices, Triangles triangles);
 
-  /// All that is wrong with the mesh. Triangles without area are those that
-  /// HasArea() in Geometry.h rejects. O(#V + #T), never throws.
-  static MeshReport Check(const Points& points, const Triangles& triangles);
+  /// All that is wrong with triangles and points together.
+  static MeshReport Check(const Points& points, Triangles triangles);
 
   int NumberOfVertices() const { return static_cast<int>(this->RingOffsets.size()) - 1; }
   int NumberOfTriangles() const { return static_cast<int>(this->Corners.rows()); }
@@ -114,6 +101,11 @@ public:
   }
 
 private:
+  void MakeRings(std::vector<int>& corners, const std::vector<int>& lastCorners,
+    const Triangles& triangles, MeshReport& report);
+  void MakeTwins(const std::vector<int>& edgeOfCorner);
+  void FindComponents();
+
   Triangles Corners;
   std::vector<int> RingOffsets = { 0 }; // #V + 1
   std::vector<int> Neighbors;           // #D

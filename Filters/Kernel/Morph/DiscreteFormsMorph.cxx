@@ -2,6 +2,7 @@
 #include "Morph/DiscreteFormsMorph.h"
 
 #include "Algebra/Rotation.h"
+#include "Base/Constants.h"
 #include "Differential/FrameReconstruction.h"
 #include "Differential/Laplacian.h"
 
@@ -12,7 +13,6 @@ namespace cartan
 {
 namespace
 {
-constexpr double TwoPi = 2.0 * 3.14159265358979323846;
 
 /// Chooses the branches of `angles` (#D, radians) so that they follow
 /// `previous`: each differs from it by half a turn at most, and their sum around
@@ -26,7 +26,7 @@ void FollowAngles(
     double sum = 0.0;
     for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
-      angles[d] = previous[d] + std::remainder(angles[d] - previous[d], TwoPi);
+      angles[d] = previous[d] + std::remainder(angles[d] - previous[d], FullTurn);
       sum += angles[d] - previous[d];
     }
     if (mesh.IsBoundary(v))
@@ -34,7 +34,7 @@ void FollowAngles(
       continue;
     }
     // Whole turns too many go where a half turn leaves the direction open.
-    for (int excess = static_cast<int>(std::lround(sum / TwoPi)); excess != 0;)
+    for (int excess = static_cast<int>(std::lround(sum / FullTurn)); excess != 0;)
     {
       const int sign = excess > 0 ? 1 : -1;
       int widest = mesh.RingBegin(v);
@@ -45,7 +45,7 @@ void FollowAngles(
           widest = d;
         }
       }
-      angles[widest] -= sign * TwoPi;
+      angles[widest] -= sign * FullTurn;
       excess -= sign;
     }
   }

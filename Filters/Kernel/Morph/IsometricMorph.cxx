@@ -2,6 +2,7 @@
 #include "Morph/IsometricMorph.h"
 
 #include "Differential/Laplacian.h"
+#include "Mesh/TriangleShape.h"
 
 #include <cmath>
 
@@ -63,17 +64,16 @@ void CheckKey(const HingeTopology& topology, const Points& key, int number,
   }
 }
 
-/// Half of the cotangent of the angle at a corner of a layout. That of an
-/// equilateral triangle where there is next to no area: weights only say whom to
-/// trust, and much larger ones than the others cost the system its digits.
+/// Half of the cotangent of the angle at a corner of a layout. Less flat triangles
+/// count as equilateral than elsewhere: weights only say whom to trust, and much
+/// larger ones than the others cost the system its digits.
 double HalfCotangent(const Layouts& layouts, int t, int corner)
 {
   const Eigen::Vector2d a = LayoutEdge(layouts, t, corner);
   const Eigen::Vector2d b = -LayoutEdge(layouts, t, (corner + 2) % 3);
   const double twiceArea = a[0] * b[1] - a[1] * b[0];
-  return twiceArea > 1e-6 * std::max({ a.squaredNorm(), b.squaredNorm(), (a - b).squaredNorm() })
-    ? 0.5 * a.dot(b) / twiceArea
-    : 0.5 / std::sqrt(3.0);
+  const double longest = std::max({ a.squaredNorm(), b.squaredNorm(), (a - b).squaredNorm() });
+  return 0.5 * Cotangent(a.dot(b), twiceArea, longest, 1e-6);
 }
 }
 

@@ -3,7 +3,7 @@
 
 #include "Algebra/Rotation.h"
 #include "Differential/Laplacian.h"
-#include "Mesh/Geometry.h"
+#include "Mesh/TriangleShape.h"
 
 #include <queue>
 #include <tuple>
