@@ -39,6 +39,7 @@ int vtkPrepareSurface::RequestData(
       const cartan::TriangleSoup soup = cartan::ReadTriangles(input);
       cartan::RepairOptions options;
       options.MergesPoints = this->MergePoints;
+      options.MergesInnerPoints = this->MergeInnerPoints;
       options.MergeTolerance =
         this->Tolerance * (this->ToleranceIsAbsolute ? 1.0 : UsedDiagonal(soup));
       options.DropsDoubled = this->DropDoubledTriangles;
@@ -67,6 +68,7 @@ void vtkPrepareSurface::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MergePoints: " << this->MergePoints << "\n";
+  os << indent << "MergeInnerPoints: " << this->MergeInnerPoints << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "ToleranceIsAbsolute: " << this->ToleranceIsAbsolute << "\n";
   os << indent << "AverageMergedArrays: " << this->AverageMergedArrays << "\n";

@@ -9,7 +9,7 @@
  * edge. The other filters of Cartan refuse such a surface, or would open it
  * along its seams. This one repairs it, in this order:
  *
- * 1. merges points in the same place (MergePoints, Tolerance),
+ * 1. merges points of borders in the same place (MergePoints, Tolerance),
  * 2. drops triangles that use a point twice, and of triangles on the same three
  *    points all but one (DropDoubledTriangles),
  * 3. turns triangles over so that neighbors agree (OrientConsistently),
@@ -81,11 +81,17 @@ public:
 
   ///@{
   /**
-   * Whether to merge points in the same place. On by default.
+   * Whether to merge points in the same place. Points that have a closed fan of
+   * triangles around them are left alone, unless MergeInnerPoints is on: merging
+   * them would join bodies in contact, and front and back of a plate without
+   * thickness. On and off by default.
    */
   vtkSetMacro(MergePoints, bool);
   vtkGetMacro(MergePoints, bool);
   vtkBooleanMacro(MergePoints, bool);
+  vtkSetMacro(MergeInnerPoints, bool);
+  vtkGetMacro(MergeInnerPoints, bool);
+  vtkBooleanMacro(MergeInnerPoints, bool);
   ///@}
 
   ///@{
@@ -221,6 +227,7 @@ protected:
 
 private:
   bool MergePoints = true;
+  bool MergeInnerPoints = false;
   double Tolerance = 0.0;
   bool ToleranceIsAbsolute = false;
   bool AverageMergedArrays = false;

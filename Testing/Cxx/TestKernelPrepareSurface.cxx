@@ -23,6 +23,14 @@ Shape Box(const Eigen::RowVector3d& at = Eigen::RowVector3d::Zero(), int n = 1)
   return shapes::Moved(shapes::Bar(n, n, n, { 1, 1, 1 }), at);
 }
 
+/// Merges all points, also those of bodies in contact.
+RepairOptions MergingAll()
+{
+  RepairOptions options;
+  options.MergesInnerPoints = true;
+  return options;
+}
+
 /// A band of quads that closes after `turns` half twists; ids as in Patch.
 Shape TwistedBand(int around, int across, int turns)
 {
@@ -171,7 +179,8 @@ TEST(PrepareSurface, BoxesThatShareAnEdgeBecomeTwoClosedOnes)
     const Shape boxes = shapes::Union(Box({ 0, 0, 0 }, n), Box({ 1, 1, 0 }, n));
     for (const bool insideOut : { false, true })
     {
-      const RepairedSurface result = Repaired(insideOut ? shapes::Inverted(boxes) : boxes);
+      const RepairedSurface result =
+        Repaired(insideOut ? shapes::Inverted(boxes) : boxes, MergingAll());
       const Topology topology = TopologyOf(result);
       EXPECT_EQ(topology.Components, 2);
       EXPECT_EQ(topology.BorderEdges, 0);
@@ -187,7 +196,7 @@ TEST(PrepareSurface, BoxesThatShareAnEdgeBecomeTwoClosedOnes)
 TEST(PrepareSurface, BoxesThatShareAVertexBecomeTwo)
 {
   const Shape boxes = shapes::Union(Box(), Box({ 1, 1, 1 }));
-  const RepairedSurface result = Repaired(boxes);
+  const RepairedSurface result = Repaired(boxes, MergingAll());
   EXPECT_EQ(TopologyOf(result).Components, 2);
   EXPECT_EQ(TopologyOf(result).BorderEdges, 0);
   EXPECT_EQ(result.Counts.MergedPoints, 1);
@@ -220,13 +229,37 @@ TEST(PrepareSurface, ABodyThatTouchesItselfIsCutButStaysWhole)
   {
     ring = shapes::Union(ring, Box(cells[i]));
   }
-  const RepairedSurface result = Repaired(ring);
+  const RepairedSurface result = Repaired(ring, MergingAll());
   const Topology topology = TopologyOf(result);
   EXPECT_EQ(topology.Components, 1);
   EXPECT_EQ(topology.BorderEdges, 0);
   EXPECT_EQ(topology.Euler, 2);
   EXPECT_NEAR(shapes::Volume(result.Positions, result.Faces), 7.0, 1e-12);
   EXPECT_EQ(result.Counts.DoubledTriangles, 2 * 2 * 6);
+}
+
+TEST(PrepareSurface, PointsInsideTheSurfaceAreLeftAlone)
+{
+  // Boxes in contact, and a plate of no thickness that is closed at its rim.
+  const Shape front = shapes::Plane(4);
+  Shape plate = shapes::Union(front, shapes::Inverted(front));
+  for (int corner = 0; corner < plate.Faces.size(); ++corner)
+  {
+    int& v = plate.Faces.data()[corner];
+    v = plate.Positions.row(v).cwiseAbs().maxCoeff() > 0.49 ? v % front.NumberOfVertices() : v;
+  }
+  for (const bool dropsDoubled : { false, true })
+  {
+    RepairOptions options;
+    options.DropsDoubled = dropsDoubled;
+    const RepairedSurface result = Repaired(plate, options);
+    EXPECT_EQ(result.Counts.MergedPoints, 0);
+    EXPECT_EQ(TopologyOf(result).BorderEdges, 0);
+  }
+  const Shape boxes = shapes::Union(Box({ 0, 0, 0 }, 2), Box({ 1, 0, 0 }, 2));
+  EXPECT_EQ(Repaired(boxes).Faces, boxes.Faces);
+  // As soup they have borders only; the wall between them is there twice.
+  EXPECT_EQ(TopologyOf(Repaired(shapes::Soup(boxes))).BorderEdges, 0);
 }
 
 TEST(PrepareSurface, PagesOfABookComeApart)
@@ -292,7 +325,7 @@ TEST(PrepareSurface, DoubledTrianglesGo)
   // The whole surface twice, once turned over; and one triangle three times.
   for (const Shape& second : { sphere, shapes::Inverted(sphere) })
   {
-    const RepairedSurface result = Repaired(shapes::Union(sphere, second));
+    const RepairedSurface result = Repaired(shapes::Union(sphere, second), MergingAll());
     EXPECT_EQ(result.Faces, sphere.Faces);
     EXPECT_EQ(result.Counts.DoubledTriangles, sphere.Faces.rows());
   }
@@ -321,12 +354,13 @@ TEST(PrepareSurface, PlatesAndBodiesInContactStayClosed)
     v = p.maxCoeff() > 0.49 ? v % front.NumberOfVertices() : v;
     plate.Positions(v, 2) = p.maxCoeff() > 0.49 ? 0.0 : v < front.NumberOfVertices() ? 0.1 : -0.1;
   }
-  const RepairedSurface cushion = Repaired(plate);
+  const RepairedSurface cushion = Repaired(plate, MergingAll());
   EXPECT_EQ(TopologyOf(cushion).BorderEdges, 0);
   EXPECT_EQ(TopologyOf(cushion).Euler, 2);
   EXPECT_GT(cushion.Counts.DoubledTriangles, 0);
   // Two boxes with a face in common become one body.
-  const RepairedSurface bar = Repaired(shapes::Union(Box({ 0, 0, 0 }, 3), Box({ 1, 0, 0 }, 3)));
+  const RepairedSurface bar =
+    Repaired(shapes::Union(Box({ 0, 0, 0 }, 3), Box({ 1, 0, 0 }, 3)), MergingAll());
   EXPECT_EQ(TopologyOf(bar).Components, 1);
   EXPECT_EQ(TopologyOf(bar).BorderEdges, 0);
   EXPECT_NEAR(shapes::Volume(bar.Positions, bar.Faces), 2.0, 1e-12);

@@ -242,6 +242,9 @@ TEST_F(PrepareSurface, PolygonsStayWhereOnlyIdsOrDirectionChange)
         return surfaces::Point{ p[0] + 1, p[1] + 1, p[2] };
       }));
   vtkPolyData* output = this->Run(boxes);
+  EXPECT_EQ(Count(output, "MergedPoints"), 0);
+  this->Filter->MergeInnerPointsOn();
+  output = this->Run(boxes);
   EXPECT_EQ(output->GetNumberOfPolys(), 12);
   EXPECT_EQ(output->GetNumberOfPoints(), 16);
   EXPECT_NEAR(VolumeOf(output), 2.0, 1e-12);

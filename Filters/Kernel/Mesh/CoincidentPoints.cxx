@@ -55,15 +55,15 @@ std::vector<int> FindEqualPoints(const Points& points, const std::vector<char>& 
   return first;
 }
 
-/// Points in cubes with edges as long as the tolerance: what is within the
-/// tolerance of a point is in its cube or one of the 26 around it.
+/// Points in cubes with edges twice as long as the tolerance: what is within the
+/// tolerance of a point is in its cube or one of the seven next to its corner.
 class Grid
 {
 public:
-  Grid(const Points& points, const Eigen::Vector3d& origin, double cellSize)
+  Grid(const Points& points, const Eigen::Vector3d& origin, double tolerance)
     : Positions(points)
     , Origin(origin)
-    , CellSize(cellSize)
+    , Tolerance(tolerance)
     , Next(points.rows(), -1)
   {
   }
@@ -78,16 +78,17 @@ public:
     }
   }
 
-  /// The nearest inserted point within the cell size; -1 if there is none.
+  /// The nearest inserted point within the tolerance; -1 if there is none.
   int Nearest(int v) const
   {
     int nearest = -1;
-    double best = this->CellSize * this->CellSize;
+    double best = this->Tolerance * this->Tolerance;
     const Cell center = this->CellOf(v);
-    for (int i = 0; i < 27; ++i)
+    const Cell side = this->NearerSides(v, center);
+    for (int i = 0; i < 8; ++i)
     {
-      const auto head = this->Heads.find(
-        { center[0] + i % 3 - 1, center[1] + i / 3 % 3 - 1, center[2] + i / 9 - 1 });
+      const auto head = this->Heads.find({ center[0] + (i & 1 ? side[0] : 0),
+        center[1] + (i & 2 ? side[1] : 0), center[2] + (i & 4 ? side[2] : 0) });
       for (int w = head == this->Heads.end() ? -1 : head->second; w >= 0; w = this->Next[w])
       {
         const double distance = (this->Positions.row(w) - this->Positions.row(v)).squaredNorm();
@@ -118,20 +119,35 @@ private:
     }
   };
 
+  double InCells(int v, int axis) const
+  {
+    return (this->Positions(v, axis) - this->Origin[axis]) / (2.0 * this->Tolerance);
+  }
+
   Cell CellOf(int v) const
   {
     Cell cell;
     for (int axis = 0; axis < 3; ++axis)
     {
-      cell[axis] = static_cast<std::int64_t>(
-        std::floor((this->Positions(v, axis) - this->Origin[axis]) / this->CellSize));
+      cell[axis] = static_cast<std::int64_t>(std::floor(this->InCells(v, axis)));
     }
     return cell;
   }
 
+  /// -1 or 1 per axis: where the nearer neighbor of the point's cell is.
+  Cell NearerSides(int v, const Cell& cell) const
+  {
+    Cell sides;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      sides[axis] = this->InCells(v, axis) - static_cast<double>(cell[axis]) < 0.5 ? -1 : 1;
+    }
+    return sides;
+  }
+
   const Points& Positions;
   Eigen::Vector3d Origin;
-  double CellSize;
+  double Tolerance;
   std::unordered_map<Cell, int, Hash> Heads; // the last point inserted into a cell
   std::vector<int> Next;                     // the one before it in the same cell, or -1
 };

@@ -4,6 +4,7 @@
 #include "Base/DisjointSets.h"
 #include "Mesh/CoincidentPoints.h"
 #include "Mesh/DoubledTriangles.h"
+#include "Mesh/EdgeTable.h"
 #include "Mesh/Geometry.h"
 #include "Mesh/NonManifoldCut.h"
 #include "Mesh/Orientation.h"
@@ -53,6 +54,35 @@ void RequireUsable(const Points& points, const Triangles& triangles)
   }
 }
 
+/// Which points may be merged: those on edges of one triangle, or of more than
+/// two, and the ends of edges that the tolerance collapses.
+std::vector<char> FindSeams(const Points& points, const Triangles& triangles, double tolerance)
+{
+  std::vector<char> isSeam(points.rows(), 0);
+  Triangles faces(triangles.rows(), 3);
+  Eigen::Index count = 0;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+  {
+    const auto corners = triangles.row(t);
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+    {
+      faces.row(count++) = corners;
+    }
+  }
+  faces.conservativeResize(count, 3);
+  const EdgeTable edges(static_cast<int>(points.rows()), faces);
+  for (int edge = 0; edge < edges.NumberOfEdges(); ++edge)
+  {
+    const int a = SideFrom(faces, *edges.Begin(edge));
+    const int b = SideTo(faces, *edges.Begin(edge));
+    if (edges.NumberOfSides(edge) != 2 || (points.row(a) - points.row(b)).norm() <= tolerance)
+    {
+      isSeam[a] = isSeam[b] = 1;
+    }
+  }
+  return isSeam;
+}
+
 /// The surface on its way through the steps. Until the cut a vertex is an input
 /// point, the first of those merged; after it, those and their copies.
 class Repair
@@ -75,8 +105,11 @@ public:
   {
     if (this->Options.MergesPoints)
     {
-      this->Merged =
-        FindCoincidentPoints(this->Input, this->IsUsed, this->Options.MergeTolerance, context);
+      const double tolerance = this->Options.MergeTolerance;
+      this->Merged = FindCoincidentPoints(this->Input,
+        this->Options.MergesInnerPoints ? this->IsUsed
+                                        : FindSeams(this->Input, this->Faces, tolerance),
+        tolerance, context);
       for (int corner = 0; corner < this->Faces.size(); ++corner)
       {
         int& v = this->Faces.data()[corner];

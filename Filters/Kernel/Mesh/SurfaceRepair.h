@@ -14,13 +14,16 @@ namespace cartan
 {
 /// The steps of RepairSurface, in their order. Those that are on by default make
 /// any triangles an oriented manifold, and change nothing where they are one
-/// without coincident points.
+/// whose borders are apart and whose closed components face outwards.
 struct RepairOptions
 {
+  /// Merges points on borders and edges of more than two triangles, and ends of
+  /// edges not longer than the tolerance. Others are in nobody's way.
   bool MergesPoints = true;
-  double MergeTolerance = 0.0; ///< length units; 0: equal coordinates
-  bool DropsDoubled = true;    ///< triangles on the same three points
-  bool Orients = true;         ///< neighbors alike
+  bool MergesInnerPoints = false; ///< all points: bodies in contact become one
+  double MergeTolerance = 0.0;    ///< length units; 0: equal coordinates
+  bool DropsDoubled = true;       ///< triangles on the same three points
+  bool Orients = true;            ///< neighbors alike
   bool CutsNonManifold = true;
   bool OrientsOutwards = true;    ///< closed components
   bool AlternatesNested = true;   ///< walls of cavities inwards, see OrientOutwards
