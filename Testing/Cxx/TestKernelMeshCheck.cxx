@@ -107,7 +107,7 @@ TEST(MeshReport, CountsEdgesOfMoreThanTwoTriangles)
   ExpectSample(report.NonManifoldEdges, { 2 });
   EXPECT_TRUE(report.InconsistentEdges.IsEmpty());
   EXPECT_TRUE(report.NonManifoldVertices.IsEmpty());
-  ExpectRefused(faces, 6, { "1 edge (id 2)", "more than two triangles", "split" });
+  ExpectRefused(faces, 6, { "1 edge (id 2)", "more than two triangles", "Prepare Surface" });
 }
 
 TEST(MeshReport, CountsInconsistentOrientation)
@@ -137,7 +137,7 @@ TEST(MeshReport, CountsBowTies)
 {
   const std::vector<Eigen::Vector3i> open = { { 0, 1, 2 }, { 2, 3, 4 } };
   ExpectSample(Check(open, 5).NonManifoldVertices, { 2 });
-  ExpectRefused(open, 5, { "1 point (id 2)", "several fans", "duplicate" });
+  ExpectRefused(open, 5, { "1 point (id 2)", "several fans", "Prepare Surface" });
 
   // Two tetrahedra that touch in a point: every edge is fine.
   Shape two = shapes::Union(shapes::Icosphere(1), shapes::Icosphere(1));

@@ -333,11 +333,11 @@ inline std::vector<BadSurface> BadSurfaces()
     { "2 points (ids 7, 9)", "NaN or infinite", "repair or remove" } });
 
   bad.push_back({ "non-manifold edge", fromFaces(plane, { { 0, 1, 5 }, { 1, 0, 6 }, { 0, 1, 7 } }),
-    { "1 edge (id 0)", "more than two triangles", "split" } });
+    { "1 edge (id 0)", "more than two triangles", "Prepare Surface" } });
   bad.push_back({ "bow tie", fromFaces(plane, { { 0, 1, 5 }, { 5, 11, 10 } }),
-    { "1 point (id 5)", "several fans", "duplicate" } });
+    { "1 point (id 5)", "several fans", "Prepare Surface" } });
   bad.push_back({ "orientation", fromFaces(plane, { { 0, 1, 5 }, { 1, 5, 6 } }),
-    { "1 edge (id 1)", "opposite orientation", "Surface Normals" } });
+    { "1 edge (id 1)", "opposite orientation", "Prepare Surface" } });
 
   auto missing = MakePolyData(plane);
   missing->GetPolys()->InsertNextCell({ 0, 1, 1000 });

@@ -33,17 +33,18 @@ std::string MeshReport::DescribeErrors(const std::vector<long long>& cellIds) co
   add(this->OutOfRange.Renamed(cellIds), "triangle", "triangles",
     " using a point that does not exist: repair the cells.");
   add(this->RepeatedVertex.Renamed(cellIds), "triangle", "triangles",
-    " using a point twice: remove them, for example with the Clean filter.");
+    " using a point twice: remove them with Prepare Surface.");
   add(this->NonFinite, "point", "points",
     " with a NaN or infinite coordinate: repair or remove them.");
   add(this->NonManifoldEdges, "edge", "edges",
-    " with more than two triangles, ids of the first end points: split the surface there or "
-    "remove the extra triangles.");
+    " with more than two triangles, ids of the first end points: cut the surface there with "
+    "Prepare Surface.");
   add(this->InconsistentEdges, "edge", "edges",
     " between triangles of opposite orientation, ids of the first end points: orient the surface "
-    "consistently, for example with Surface Normals (Consistency on).");
+    "with Prepare Surface.");
   add(this->NonManifoldVertices, "point", "points",
-    " where several fans of triangles meet: duplicate these points, one for each fan.");
+    " where several fans of triangles meet: give each fan a point of its own with Prepare "
+    "Surface.");
   return text;
 }
 
