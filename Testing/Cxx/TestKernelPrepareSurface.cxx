@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <set>
+#include <random>
 
 using cartan::RepairedSurface;
 using cartan::RepairOptions;
@@ -457,6 +457,52 @@ TEST(PrepareSurface, RefusesWhatNobodyCanRepair)
   sphere = shapes::Icosphere(0);
   sphere.Positions.setZero();
   refuses(sphere, "No triangle is left");
+}
+
+/// Triangles between random points of a small grid: edges of many triangles,
+/// points twice, points in one place, one-sided parts, touching fans. Whatever
+/// the settings, as long as it cuts, the result is a manifold.
+TEST(PrepareSurface, AnyTrianglesBecomeAManifold)
+{
+  int repaired = 0;
+  for (unsigned int seed = 1; seed <= 3000; ++seed)
+  {
+    std::mt19937 random(seed);
+    const auto pick = [&random](unsigned int count) { return random() % count; };
+    Shape shape;
+    shape.Positions.resize(3 + pick(12), 3);
+    shape.Faces.resize(1 + pick(25), 3);
+    for (Eigen::Index i = 0; i < shape.Positions.size(); ++i)
+    {
+      shape.Positions.data()[i] = pick(4);
+    }
+    for (Eigen::Index i = 0; i < shape.Faces.size(); ++i)
+    {
+      shape.Faces.data()[i] =
+        static_cast<int>(pick(static_cast<unsigned int>(shape.Positions.rows())));
+    }
+    RepairOptions options;
+    options.MergesPoints = pick(4) > 0;
+    options.MergesInnerPoints = pick(2) > 0;
+    options.MergeTolerance = pick(3) > 0 ? 0.0 : 0.5;
+    options.DropsDoubled = pick(4) > 0;
+    options.Orients = pick(4) > 0;
+    options.FlipsEdges = pick(2) > 0;
+    options.Flips.MaximumAngle = pick(2) > 0 ? 0.1 : 3.2;
+    options.Holes.MaximumEdges = pick(2) > 0 ? 20 : 0;
+    options.SmallestComponent = pick(3) > 0 ? 0.0 : 0.2;
+    SCOPED_TRACE(seed);
+    try
+    {
+      Repaired(shape, options);
+      ++repaired;
+    }
+    catch (const cartan::Error& error)
+    {
+      ASSERT_NE(std::string(error.what()).find("No triangle"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_GT(repaired, 2500);
 }
 
 /// Every mesh of libcgal-demo that has triangles becomes one that TriangleMesh
