@@ -9,6 +9,10 @@
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
+#include <map>
+#include <set>
+#include <vector>
+
 vtkStandardNewMacro(vtkPrepareSurface);
 
 static_assert(cartan::LargestHole == 500, "MaximumHoleEdges has this limit");
@@ -24,6 +28,33 @@ double UsedDiagonal(const cartan::TriangleSoup& soup)
   }
   return box.diagonal().norm();
 }
+
+/// Gives polygons on the same points the same triangles, those of the first: front
+/// and back of a square may have been split along different diagonals, and would
+/// not be seen as doubled.
+void SplitDoubledPolygonsAlike(cartan::TriangleSoup& soup)
+{
+  std::map<std::vector<int>, Eigen::Index> firstRow;
+  for (Eigen::Index begin = 0, end = 0; begin < soup.Faces.rows(); begin = end)
+  {
+    std::set<int> corners;
+    for (; end < soup.Faces.rows() && soup.CellIds[end] == soup.CellIds[begin]; ++end)
+    {
+      corners.insert({ soup.Faces(end, 0), soup.Faces(end, 1), soup.Faces(end, 2) });
+    }
+    const Eigen::Index count = end - begin;
+    if (count < 2 || static_cast<Eigen::Index>(corners.size()) != count + 2)
+    {
+      continue; // a triangle, or a strip that comes back to a point
+    }
+    const auto known = firstRow.emplace(std::vector<int>(corners.begin(), corners.end()), begin);
+    if (!known.second)
+    {
+      soup.Faces.middleRows(begin, count) =
+        soup.Faces.middleRows(known.first->second, count).eval();
+    }
+  }
+}
 }
 
 int vtkPrepareSurface::RequestData(
@@ -36,7 +67,11 @@ int vtkPrepareSurface::RequestData(
   return cartan::RunGuarded(this,
     [&]
     {
-      const cartan::TriangleSoup soup = cartan::ReadTriangles(input);
+      cartan::TriangleSoup soup = cartan::ReadTriangles(input);
+      if (this->DropDoubledTriangles)
+      {
+        SplitDoubledPolygonsAlike(soup);
+      }
       cartan::RepairOptions options;
       options.MergesPoints = this->MergePoints;
       options.MergesInnerPoints = this->MergeInnerPoints;

@@ -265,6 +265,22 @@ TEST_F(PrepareSurface, PolygonsStayWhereOnlyIdsOrDirectionChange)
   }
 }
 
+TEST_F(PrepareSurface, DoubledPolygonsGo)
+{
+  const surfaces::Surface grid = surfaces::QuadGrid(5, 0.0); // either diagonal is as good
+  const surfaces::Surface back = surfaces::Inverted(grid);
+  const auto doubled = vtktest::CopyOf(grid);
+  for (vtkIdType cell = 0; cell < back->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    back->GetCellPoints(cell, ids);
+    doubled->GetPolys()->InsertNextCell(ids);
+  }
+  vtkPolyData* output = this->Run(doubled);
+  vtktest::ExpectSameCells(output, grid);
+  EXPECT_EQ(Count(output, "DoubledTriangles"), 50);
+}
+
 TEST_F(PrepareSurface, WhatIsRemovedTakesItsPointsAndLinesAlong)
 {
   const surfaces::Surface both = surfaces::Union(surfaces::Sphere(16),
