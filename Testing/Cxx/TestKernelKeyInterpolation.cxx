@@ -134,6 +134,8 @@ TEST(KeyInterpolation, RefusesParametersThatMakeNoSense)
   EXPECT_THROW(make({ 0.0, 1.0 }, 3), cartan::Error);
   EXPECT_THROW(make({ 0.0, 0.0 }, 2), cartan::Error);
   EXPECT_THROW(make({ 0.0, nan }, 2), cartan::Error);
+  EXPECT_THROW(make({ 0.0, 1.0 }, 2).Evaluate(nan), cartan::Error);
+  EXPECT_THROW(make({ 0.0, 0.5, 1.0 }, 3).Evaluate(nan), cartan::Error);
   try
   {
     make({ 0.0, 0.5, 0.25 }, 3);

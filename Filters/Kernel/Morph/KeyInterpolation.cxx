@@ -33,6 +33,11 @@ double EndSlope(double width, double secant, double nextWidth, double nextSecant
 
 KeyPlace PlaceBetweenKeys(double t, const std::vector<double>& parameters)
 {
+  if (std::isnan(t))
+  {
+    throw Error(
+      ErrorCode::BadInput, "The parameter of the morph is not a number: set one, such as 0.5.");
+  }
   const auto after = std::upper_bound(parameters.begin() + 1, parameters.end() - 1, t);
   const auto before = after - 1;
   return { static_cast<int>(before - parameters.begin()), (t - *before) / (*after - *before) };
