@@ -3,6 +3,7 @@
 
 #include "Differential/Laplacian.h"
 #include "Mesh/TriangleShape.h"
+#include "Morph/LengthPolish.h"
 
 #include <cmath>
 
@@ -225,8 +226,8 @@ std::size_t IsometricMorph::GetBytes() const
 {
   return this->Topology.GetBytes() + this->KeyLengths.GetBytes() + this->KeyAngles.GetBytes() +
     this->Forest.GetBytes() + this->Stitching.GetBytes() +
-    (this->Averaging ? this->Averaging->GetBytes() : 0) + this->PolishSolver.GetBytes() +
-    this->Known.GetBytes() + BytesOf(this->IsHeld);
+    (this->Averaging ? this->Averaging->GetBytes() : 0) + this->Known.GetBytes() +
+    BytesOf(this->IsHeld);
 }
 
 Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
@@ -257,7 +258,8 @@ Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
   if (this->StitchedComponents > 0)
   {
     this->Stitch(layouts, frames, points);
-    this->Polish(lengths, points, context.Part(0.7, 1.0));
+    PolishLengths(this->Topology.Edges, lengths, this->IsHeld, this->Options.LengthPolish, points,
+      context.Part(0.7, 1.0));
   }
   return points;
 }
@@ -350,103 +352,5 @@ void IsometricMorph::Stitch(const Layouts& layouts, const Matrices& frames, Poin
     triangle.col(2) = -axes * LayoutEdge(layouts, t, 2);
   }
   this->Stitching.Stitch(corners, points);
-}
-
-void IsometricMorph::Polish(
-  const Eigen::VectorXd& lengths, Points& points, const ExecutionContext& context)
-{
-  // With the unit edge u and the error r = l - |e| of edges, a step v minimizes
-  //
-  //   sum (u.(v_j - v_i) - r)^2 / l^2 + damping sum |v|^2 / m^2,
-  //
-  // m the mean length of a vertex's edges. Damping is for bending, which changes
-  // no length to first order. At 1e-3 three rounds leave a sixth of the errors of
-  // a bent tube; with less, lengths that no shape can have make sharp bumps.
-  // Where a step does not help, it is not taken, and the next is shorter.
-  double damping = 1e-3;
-  const int numberOfVertices = this->Topology.NumberOfVertices;
-  const auto error = [&](const Points& candidate)
-  {
-    return (EdgeLengths(this->Topology, candidate).cwiseQuotient(lengths).array() - 1.0)
-      .matrix()
-      .squaredNorm();
-  };
-  Eigen::VectorXd means = Eigen::VectorXd::Zero(numberOfVertices);
-  Eigen::VectorXd valences = Eigen::VectorXd::Zero(numberOfVertices);
-  for (int e = 0; e < this->Topology.NumberOfEdges(); ++e)
-  {
-    for (const int v : { this->Topology.Edges(e, 0), this->Topology.Edges(e, 1) })
-    {
-      means[v] += lengths[e];
-      valences[v] += 1.0;
-    }
-  }
-  Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(3 * numberOfVertices);
-  std::vector<char> isFixed(3 * static_cast<std::size_t>(numberOfVertices));
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
-    std::fill_n(isFixed.begin() + 3 * static_cast<std::size_t>(v), 3, this->IsHeld[v]);
-    if (!this->IsHeld[v])
-    {
-      stiffness.segment<3>(3 * v).setConstant(valences[v] * valences[v] / (means[v] * means[v]));
-    }
-  }
-  for (int round = 0; round < this->Options.LengthPolish; ++round)
-  {
-    Field rightHandSide;
-    const SparseMatrix normal = this->LengthEquations(lengths, points, rightHandSide);
-    this->PolishSolver.Factorize(normal, isFixed, damping * stiffness);
-    Field step = Field::Zero(3 * numberOfVertices, 1);
-    this->PolishSolver.Solve(rightHandSide, step);
-    const Points candidate = points + Eigen::Map<const Points>(step.data(), numberOfVertices, 3);
-    if (error(candidate) < error(points))
-    {
-      points = candidate;
-    }
-    else
-    {
-      damping *= 10.0;
-    }
-    context.Report((round + 1.0) / this->Options.LengthPolish);
-  }
-}
-
-SparseMatrix IsometricMorph::LengthEquations(
-  const Eigen::VectorXd& lengths, const Points& points, Field& rightHandSide) const
-{
-  const int numberOfVertices = this->Topology.NumberOfVertices;
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(36 * static_cast<std::size_t>(lengths.size()));
-  rightHandSide = Field::Zero(3 * numberOfVertices, 1);
-  for (int e = 0; e < this->Topology.NumberOfEdges(); ++e)
-  {
-    const int i = this->Topology.Edges(e, 0);
-    const int j = this->Topology.Edges(e, 1);
-    if (this->IsHeld[i] && this->IsHeld[j])
-    {
-      continue;
-    }
-    const Eigen::Vector3d edge = (points.row(j) - points.row(i)).transpose();
-    const double length = edge.norm();
-    const Eigen::Vector3d direction =
-      length > 0.0 ? Eigen::Vector3d(edge / (length * lengths[e])) : Eigen::Vector3d(0.0, 0.0, 0.0);
-    const Eigen::Vector3d force = direction * (1.0 - length / lengths[e]);
-    rightHandSide.middleRows<3>(3 * i) -= force;
-    rightHandSide.middleRows<3>(3 * j) += force;
-    const Eigen::Matrix3d block = direction * direction.transpose();
-    for (int row = 0; row < 3; ++row)
-    {
-      for (int column = 0; column < 3; ++column)
-      {
-        entries.emplace_back(3 * i + row, 3 * i + column, block(row, column));
-        entries.emplace_back(3 * j + row, 3 * j + column, block(row, column));
-        entries.emplace_back(3 * i + row, 3 * j + column, -block(row, column));
-        entries.emplace_back(3 * j + row, 3 * i + column, -block(row, column));
-      }
-    }
-  }
-  SparseMatrix normal(3 * numberOfVertices, 3 * numberOfVertices);
-  normal.setFromTriplets(entries.begin(), entries.end());
-  return normal;
 }
 }

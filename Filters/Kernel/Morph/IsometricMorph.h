@@ -114,9 +114,6 @@ private:
     double t, const Matrices& transitions, Matrices& frames, const ExecutionContext& context);
   void Place(const Layouts& layouts, const Matrices& frames, Points& points) const;
   void Stitch(const Layouts& layouts, const Matrices& frames, Points& points) const;
-  void Polish(const Eigen::VectorXd& lengths, Points& points, const ExecutionContext& context);
-  SparseMatrix LengthEquations(
-    const Eigen::VectorXd& lengths, const Points& points, Field& rightHandSide) const;
 
   HingeTopology Topology;
   IsometricMorphOptions Options;
@@ -130,7 +127,6 @@ private:
   std::vector<char> IsHeld; // #V, the vertices that Stitch does not move
   TriangleStitching Stitching;
   std::unique_ptr<RotationAveraging> Averaging;
-  ConstrainedSolver PolishSolver; // its analysis lasts
   FrameMemory Known;
   int FrameSteps = 0;
   std::string Warning;
