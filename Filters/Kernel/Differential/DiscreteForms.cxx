@@ -163,6 +163,27 @@ bool TransitionByBits(const TriangleMesh& mesh, const DiscreteForms& forms, cons
     transition);
 }
 
+/// The same where the points p_k are all but on a line, about which next to
+/// nothing in that sum turns: from the unit vectors between all points, and the
+/// unit normals over the first two and each other one.
+Eigen::Matrix3d RotationByDirections(const Eigen::Matrix<double, 3, Eigen::Dynamic>& p,
+  const Eigen::Matrix<double, 3, Eigen::Dynamic>& q)
+{
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  for (Eigen::Index k = 1; k < p.cols(); ++k)
+  {
+    for (Eigen::Index l = 0; l < k; ++l)
+    {
+      products +=
+        (p.col(k) - p.col(l)).normalized() * (q.col(k) - q.col(l)).normalized().transpose();
+    }
+    const Eigen::Vector3d overP = (p.col(1) - p.col(0)).cross(p.col(k) - p.col(0));
+    const Eigen::Vector3d overQ = (q.col(1) - q.col(0)).cross(q.col(k) - q.col(0));
+    products += overP.normalized() * overQ.normalized().transpose();
+  }
+  return ProjectOnRotations(products);
+}
+
 /// The rotation C that minimizes sum |p_k - C q_k - shift|^2 over the vertices
 /// i, j and those opposite to their edge, p as seen from i and q from j: the
 /// orthogonal factor of sum (p_k - mean p) (q_k - mean q)^T (Kabsch, A solution
@@ -191,14 +212,18 @@ bool TransitionByProcrustes(const TriangleMesh& mesh, const Points& ring, int i,
   {
     addApex(Previous(mesh, i, d), mesh.NextAround(j, back));
   }
-  // Points on a line leave the rotation about it open.
+  // Points on a line leave the rotation about it open, those near one to rounding.
+  constexpr double thin = 1e-6;
   bool hasArea = false;
+  bool isThin = true;
   for (int apex = 2; apex < count; ++apex)
   {
     const Eigen::Vector3d edge = fromI.col(1);
     const Eigen::Vector3d side = fromI.col(apex);
-    hasArea =
-      hasArea || HasArea(edge.cross(side).norm(), LongestEdgeSquared(fromI.col(0), edge, side));
+    const double twiceArea = edge.cross(side).norm();
+    const double longestSquared = LongestEdgeSquared(fromI.col(0), edge, side);
+    hasArea = hasArea || HasArea(twiceArea, longestSquared);
+    isThin = isThin && !(twiceArea > thin * longestSquared);
   }
   if (!hasArea)
   {
@@ -206,6 +231,11 @@ bool TransitionByProcrustes(const TriangleMesh& mesh, const Points& ring, int i,
   }
   auto p = fromI.leftCols(count);
   auto q = fromJ.leftCols(count);
+  if (isThin)
+  {
+    transition = RotationByDirections(p, q);
+    return true;
+  }
   p.colwise() -= p.rowwise().mean().eval();
   q.colwise() -= q.rowwise().mean().eval();
   transition = ProjectOnRotations(p * q.transpose());
@@ -315,10 +345,35 @@ Transitions TransitionsFromFrames(const TriangleMesh& mesh, const Matrices& fram
   return transitions;
 }
 
+Transitions TransitionsFromRings(
+  const TriangleMesh& mesh, const Points& ring, const ExecutionContext& context)
+{
+  Transitions transitions(mesh.NumberOfDirectedEdges(), 9);
+  context.For(mesh.NumberOfVertices(),
+    [&](int begin, int end)
+    {
+      for (int v = begin; v < end; ++v)
+      {
+        for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+        {
+          if (!TransitionByProcrustes(mesh, ring, v, d, MatrixAt(transitions, d)))
+          {
+            transitions.row(d).setZero();
+          }
+        }
+      }
+    });
+  return transitions;
+}
+
 Transitions TransitionsFromForms(const TriangleMesh& mesh, const DiscreteForms& forms,
   TransitionMethod method, const ExecutionContext& context)
 {
   const Points ring = RingCoordinates(mesh, forms);
+  if (method == TransitionMethod::Procrustes)
+  {
+    return TransitionsFromRings(mesh, ring, context);
+  }
   const Eigen::VectorXd angles = AnglesFromFirst(mesh, forms);
   Transitions transitions(mesh.NumberOfDirectedEdges(), 9);
   context.For(mesh.NumberOfVertices(),
@@ -328,10 +383,7 @@ Transitions TransitionsFromForms(const TriangleMesh& mesh, const DiscreteForms& 
       {
         for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
         {
-          const bool isDetermined = method == TransitionMethod::Procrustes
-            ? TransitionByProcrustes(mesh, ring, v, d, MatrixAt(transitions, d))
-            : TransitionByBits(mesh, forms, ring, angles, v, d, MatrixAt(transitions, d));
-          if (!isDetermined)
+          if (!TransitionByBits(mesh, forms, ring, angles, v, d, MatrixAt(transitions, d)))
           {
             transitions.row(d).setZero();
           }

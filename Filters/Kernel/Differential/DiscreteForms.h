@@ -66,4 +66,9 @@ enum class TransitionMethod
 /// transition.
 Transitions TransitionsFromForms(const TriangleMesh& mesh, const DiscreteForms& forms,
   TransitionMethod method = TransitionMethod::Procrustes, const ExecutionContext& context = {});
+
+/// The same by Procrustes from the one-rings themselves (as RingCoordinates gives
+/// them, #D x 3), whatever frames they are seen from.
+Transitions TransitionsFromRings(
+  const TriangleMesh& mesh, const Points& ring, const ExecutionContext& context = {});
 }

@@ -19,9 +19,16 @@ std::vector<char> FixUnused(const TriangleMesh& mesh, std::vector<char> isFixed)
   }
   return isFixed;
 }
+
+/// That of a directed edge, 1 where none are given.
+double WeightOf(const Eigen::VectorXd& weights, int d)
+{
+  return weights.size() ? weights[d] : 1.0;
+}
 }
 
-SparseMatrix FrameMatrix(const TriangleMesh& mesh, const Transitions& transitions)
+SparseMatrix FrameMatrix(
+  const TriangleMesh& mesh, const Transitions& transitions, const Eigen::VectorXd& weights)
 {
   const int numberOfVertices = mesh.NumberOfVertices();
   SparseMatrix matrix(3 * numberOfVertices, 3 * numberOfVertices);
@@ -29,20 +36,21 @@ SparseMatrix FrameMatrix(const TriangleMesh& mesh, const Transitions& transition
   std::vector<std::pair<int, Eigen::Matrix3d>> blocks; // of one block column
   for (int j = 0; j < numberOfVertices; ++j)
   {
-    // |X_j - C_ij^T X_i|^2 adds I to block (j, j), C_ij C_ij^T to (i, i) and
-    // -C_ij to (i, j); both directions of each edge are equations.
+    // w |X_j - C_ij^T X_i|^2 adds w I to block (j, j), w C_ij C_ij^T to (i, i) and
+    // -w C_ij to (i, j); both directions of each edge are equations.
     blocks.clear();
     Eigen::Matrix3d diagonal = Eigen::Matrix3d::Zero();
     for (int d = mesh.RingBegin(j); d < mesh.RingEnd(j); ++d)
     {
       const Eigen::Matrix3d outgoing = MatrixAt(transitions, d);
       const Eigen::Matrix3d incoming = MatrixAt(transitions, mesh.Twin(d));
-      diagonal += outgoing * outgoing.transpose();
+      const double weight = WeightOf(weights, d);
+      diagonal += weight * outgoing * outgoing.transpose();
       if (!incoming.isZero(0.0))
       {
-        diagonal += Eigen::Matrix3d::Identity();
+        diagonal += weight * Eigen::Matrix3d::Identity();
       }
-      blocks.emplace_back(mesh.Neighbor(d), -(incoming + outgoing.transpose()));
+      blocks.emplace_back(mesh.Neighbor(d), -weight * (incoming + outgoing.transpose()));
     }
     blocks.emplace_back(j, diagonal);
     std::sort(
@@ -65,7 +73,7 @@ SparseMatrix FrameMatrix(const TriangleMesh& mesh, const Transitions& transition
 
 Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices frames, ConstrainedSolver& solver,
-  const ExecutionContext& context)
+  const ExecutionContext& context, const Eigen::VectorXd& weights)
 {
   const std::vector<char> isFixedVertex = FixUnused(mesh, isFixed);
   const int numberOfVertices = mesh.NumberOfVertices();
@@ -78,7 +86,7 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
     std::fill_n(vertices.begin() + 3 * static_cast<std::size_t>(v), 3, v);
     transposed.middleRows<3>(3 * v) = MatrixAt(frames, v).transpose();
   }
-  solver.Factorize(FrameMatrix(mesh, transitions), isFixedUnknown, {}, vertices, context);
+  solver.Factorize(FrameMatrix(mesh, transitions, weights), isFixedUnknown, {}, vertices, context);
   solver.Solve(Field::Zero(3 * numberOfVertices, 3), transposed);
   for (int v = 0; v < numberOfVertices; ++v)
   {
@@ -89,13 +97,13 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
 
 Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices start, const ConstrainedSolver& laplacian, int* steps,
-  const ExecutionContext& context)
+  const ExecutionContext& context, const Eigen::VectorXd& weights)
 {
   constexpr double tolerance = 1e-10;
   constexpr int maximumSteps = 1000;
   const std::vector<char> isGiven = FixUnused(mesh, isFixed);
   const int numberOfVertices = mesh.NumberOfVertices();
-  const SparseMatrix matrix = FrameMatrix(mesh, transitions);
+  const SparseMatrix matrix = FrameMatrix(mesh, transitions, weights);
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
   const auto clearGiven = [&](Columns& columns)
   {
@@ -178,10 +186,10 @@ Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transition
 }
 
 Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
-  const ExecutionContext& context)
+  const ExecutionContext& context, const Eigen::VectorXd& weights)
 {
   // The normal equations of Eq. 5 over both directions of each edge are
-  // 2 L x = sum_j (F_j c_ji - F_i c_ij) with the graph Laplacian L.
+  // 2 L x = sum_j w_ij (F_j c_ji - F_i c_ij) with the graph Laplacian L.
   Field rightHandSide = Field::Zero(mesh.NumberOfVertices(), 3);
   context.For(mesh.NumberOfVertices(),
     [&](int begin, int end)
@@ -191,8 +199,9 @@ Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, co
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         for (int d = mesh.RingBegin(i); d < mesh.RingEnd(i); ++d)
         {
-          sum += MatrixAt(frames, mesh.Neighbor(d)) * ring.row(mesh.Twin(d)).transpose() -
-            MatrixAt(frames, i) * ring.row(d).transpose();
+          sum += WeightOf(weights, d) *
+            (MatrixAt(frames, mesh.Neighbor(d)) * ring.row(mesh.Twin(d)).transpose() -
+              MatrixAt(frames, i) * ring.row(d).transpose());
         }
         rightHandSide.row(i) = 0.5 * sum;
       }

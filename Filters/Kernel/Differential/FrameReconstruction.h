@@ -12,8 +12,10 @@ namespace cartan
 /// The normal matrix of the discrete surface equations (1): 3 #V x 3 #V. With
 /// X_i = F_i^T, a 3 x 3 block of rows per vertex, the equations over the
 /// directed edges i -> j are X_j - C_ij^T X_i = 0. Transitions that are zero
-/// are left out.
-SparseMatrix FrameMatrix(const TriangleMesh& mesh, const Transitions& transitions);
+/// are left out. `weights` (#D, the same for both directions of an edge; here and
+/// below: empty for 1) are those of the equations' squares.
+SparseMatrix FrameMatrix(
+  const TriangleMesh& mesh, const Transitions& transitions, const Eigen::VectorXd& weights = {});
 
 /// The frames that fit the transitions best in the least-squares sense, with
 /// those given where `isFixed` is non-zero: #V x 9. Raw: rotations only if the
@@ -21,7 +23,7 @@ SparseMatrix FrameMatrix(const TriangleMesh& mesh, const Transitions& transition
 /// without a fixed frame. Unused vertices keep what `frames` has.
 Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices frames, ConstrainedSolver& solver,
-  const ExecutionContext& context = {});
+  const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {});
 
 /// The same frames by conjugate gradients, without a factorization of the 3 #V
 /// matrix. `start` must be rotations near the result: relative to them the
@@ -33,12 +35,12 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
 /// number of steps; throws Error(SingularSystem) after 1000.
 Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices start, const ConstrainedSolver& laplacian,
-  int* steps = nullptr, const ExecutionContext& context = {});
+  int* steps = nullptr, const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {});
 
 /// b of the normal equations L x = b that SolvePositions solves, with the graph
 /// Laplacian L: #V x 3.
 Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
-  const ExecutionContext& context = {});
+  const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {});
 
 /// The positions that fit x_j - x_i = F_i c_ij (Eq. 5) best over all directed
 /// edges, with those given where `isFixed` is non-zero: #V x 3. `ring` are the

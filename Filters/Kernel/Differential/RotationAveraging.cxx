@@ -96,7 +96,7 @@ RotationAveraging::Result RotationAveraging::Improve(
           residuals.row(e).setZero();
           if (!misfit.isZero(0.0))
           {
-            residuals.row(e) = VectorFromRotation(misfit).transpose();
+            residuals.row(e) = this->Edges[e].Weight * VectorFromRotation(misfit).transpose();
           }
         }
       });

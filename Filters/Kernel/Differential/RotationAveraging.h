@@ -12,7 +12,7 @@ namespace cartan
 /// The frames on the nodes of a graph that fit given transitions over its edges
 /// best,
 ///
-///   min over rotations F of sum |log(F_from C F_to^T)|^2,
+///   min over rotations F of sum w |log(F_from C F_to^T)|^2,
 ///
 /// where the transitions C (for example interpolated ones) do not fit together
 /// exactly. To first order in small rotations v of all frames a term is
@@ -28,9 +28,10 @@ public:
   {
     int From;
     int To;
+    double Weight = 1.0;
   };
 
-  /// `laplacian` is factorized: the matrix sum (v_from - v_to)^2, with a fixed
+  /// `laplacian` is factorized: the matrix sum w (v_from - v_to)^2, with a fixed
   /// node in each component at least. Frames of fixed nodes are kept.
   RotationAveraging(
     int numberOfNodes, std::vector<Edge> edges, std::shared_ptr<const ConstrainedSolver> laplacian);

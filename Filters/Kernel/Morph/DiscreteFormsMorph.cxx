@@ -2,56 +2,16 @@
 #include "Morph/DiscreteFormsMorph.h"
 
 #include "Algebra/Rotation.h"
-#include "Base/Constants.h"
+#include "Differential/DiscreteForms.h"
 #include "Differential/FrameReconstruction.h"
 #include "Differential/Laplacian.h"
+#include "Morph/RingFrames.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace cartan
 {
-namespace
-{
-
-/// Chooses the branches of `angles` (#D, radians) so that they follow
-/// `previous`: each differs from it by half a turn at most, and their sum around
-/// each inner vertex is the same, without which the ring would not close in
-/// between.
-void FollowAngles(
-  const TriangleMesh& mesh, const Eigen::VectorXd& previous, Eigen::VectorXd& angles)
-{
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    double sum = 0.0;
-    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-    {
-      angles[d] = previous[d] + std::remainder(angles[d] - previous[d], FullTurn);
-      sum += angles[d] - previous[d];
-    }
-    if (mesh.IsBoundary(v))
-    {
-      continue;
-    }
-    // Whole turns too many go where a half turn leaves the direction open.
-    for (int excess = static_cast<int>(std::lround(sum / FullTurn)); excess != 0;)
-    {
-      const int sign = excess > 0 ? 1 : -1;
-      int widest = mesh.RingBegin(v);
-      for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-      {
-        if (sign * (angles[d] - previous[d]) > sign * (angles[widest] - previous[widest]))
-        {
-          widest = d;
-        }
-      }
-      angles[widest] -= sign * FullTurn;
-      excess -= sign;
-    }
-  }
-}
-}
-
 DiscreteFormsMorph::DiscreteFormsMorph(const KeyFrames& keys, Transitions transitions,
   FrameSolver solver, const ExecutionContext& context)
   : Mesh(keys.Mesh)
@@ -60,104 +20,135 @@ DiscreteFormsMorph::DiscreteFormsMorph(const KeyFrames& keys, Transitions transi
   , Solver(solver)
   , Laplacian(std::make_shared<ConstrainedSolver>())
 {
-  const TriangleMesh& mesh = *this->Mesh;
-  const int numberOfKeys = static_cast<int>(keys.Positions.size());
-  const int directedEdges = mesh.NumberOfDirectedEdges();
-
-  this->Laplacian->Factorize(cartan::Laplacian(mesh, Eigen::VectorXd::Ones(directedEdges)),
-    mesh.Grounded(), {}, {}, context.Part(0.0, 0.3));
-
-  std::vector<RotationAveraging::Edge> edges;
-  edges.reserve(mesh.NumberOfEdges());
-  for (int d = 0; d < directedEdges; ++d)
+  for (int d = 0; d < this->Mesh->NumberOfDirectedEdges(); ++d)
   {
-    if (d < mesh.Twin(d))
+    if (d < this->Mesh->Twin(d))
     {
-      edges.push_back({ mesh.Origin(d), mesh.Neighbor(d) });
       this->Directed.push_back(d);
     }
   }
-  const auto numberOfEdges = static_cast<Eigen::Index>(edges.size());
-  this->Averaging =
-    std::make_unique<RotationAveraging>(mesh.NumberOfVertices(), std::move(edges), this->Laplacian);
-
-  Field forms(3 * directedEdges, numberOfKeys);
-  std::vector<Matrices> edgeTransitions;
-  Eigen::VectorXd previousAngles;
-  for (int k = 0; k < numberOfKeys; ++k)
-  {
-    const ExecutionContext part =
-      context.Part(0.3 + 0.6 * k / numberOfKeys, 0.3 + 0.6 * (k + 1.0) / numberOfKeys);
-    const Points& positions = keys.Positions[k];
-    const Matrices frames = VertexFrames(mesh, positions, part);
-    DiscreteForms form = ComputeDiscreteForms(mesh, positions, frames, part);
-    // Where no triangle follows there is no angle.
-    form.Angle = form.Angle.array().isNaN().select(0.0, form.Angle);
-    if (k > 0)
-    {
-      FollowAngles(mesh, previousAngles, form.Angle);
-    }
-    previousAngles = form.Angle;
-    forms.col(k) << form.Length, form.Angle, form.Height;
-    if (this->Method == Transitions::Rotations)
-    {
-      Matrices ofEdges(numberOfEdges, 9);
-      for (Eigen::Index e = 0; e < numberOfEdges; ++e)
-      {
-        const int d = this->Directed[e];
-        MatrixAt(ofEdges, e) =
-          MatrixAt(frames, mesh.Origin(d)).transpose() * MatrixAt(frames, mesh.Neighbor(d));
-      }
-      edgeTransitions.push_back(std::move(ofEdges));
-    }
-    this->Known.AddKey(this->Parameters[k], frames);
-    part.Report(1.0);
-  }
-  this->Forms = KeyInterpolation(this->Parameters, std::move(forms));
+  this->InterpolateLengths(keys);
+  this->SetUpAveraging(context.Part(0.0, 0.4));
+  std::vector<Matrices> frames = RingFrames(*this->Mesh, keys.Positions, context.Part(0.4, 0.7));
+  this->InterpolateRings(keys, frames);
+  context.Report(0.8);
   if (this->Method == Transitions::Rotations)
   {
-    // From the mean, so that no key frame counts more than another.
-    this->MeanTransitions = Matrices::Zero(numberOfEdges, 9);
-    for (const Matrices& ofEdges : edgeTransitions)
-    {
-      this->MeanTransitions += ofEdges;
-    }
-    Field fromMean(3 * numberOfEdges, numberOfKeys);
+    this->InterpolateTransitions(frames);
+  }
+  for (std::size_t k = 0; k < frames.size(); ++k)
+  {
+    this->Known.AddKey(this->Parameters[k], std::move(frames[k]));
+  }
+  context.Report(1.0);
+}
+
+void DiscreteFormsMorph::InterpolateLengths(const KeyFrames& keys)
+{
+  // With weights that are much larger than the others the systems lose digits.
+  constexpr double negligible = 1e-4;
+  const TriangleMesh& mesh = *this->Mesh;
+  const auto numberOfEdges = static_cast<Eigen::Index>(this->Directed.size());
+  Field lengths(numberOfEdges, static_cast<Eigen::Index>(keys.Positions.size()));
+  for (Eigen::Index k = 0; k < lengths.cols(); ++k)
+  {
+    const Points& positions = keys.Positions[k];
     for (Eigen::Index e = 0; e < numberOfEdges; ++e)
     {
-      auto mean = MatrixAt(this->MeanTransitions, e);
-      mean = ProjectOnRotations(Eigen::Matrix3d(mean));
-      for (int k = 0; k < numberOfKeys; ++k)
-      {
-        fromMean.block<3, 1>(3 * e, k) =
-          VectorFromRotation(mean.transpose() * MatrixAt(edgeTransitions[k], e));
-      }
+      const int d = this->Directed[e];
+      lengths(e, k) = (positions.row(mesh.Neighbor(d)) - positions.row(mesh.Origin(d))).norm();
     }
-    this->FromMean = KeyInterpolation(this->Parameters, std::move(fromMean));
   }
+  const Eigen::VectorXd means = lengths.rowwise().mean();
+  this->Negligible = negligible * means.mean();
+  this->Weights = Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges());
+  for (Eigen::Index e = 0; e<numberOfEdges&& this->Negligible> 0.0; ++e)
+  {
+    // Relative to the mean, so that the unit of length does not matter.
+    const int d = this->Directed[e];
+    this->Weights[d] = this->Weights[mesh.Twin(d)] =
+      this->Negligible / negligible / std::max(means[e], this->Negligible);
+  }
+  this->KeyLengths = KeyInterpolation(this->Parameters, std::move(lengths));
+}
+
+void DiscreteFormsMorph::SetUpAveraging(const ExecutionContext& context)
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  this->Laplacian->Factorize(
+    cartan::Laplacian(mesh, this->Weights), mesh.Grounded(), {}, {}, context);
+  std::vector<RotationAveraging::Edge> edges;
+  edges.reserve(this->Directed.size());
+  for (const int d : this->Directed)
+  {
+    edges.push_back({ mesh.Origin(d), mesh.Neighbor(d), this->Weights[d] });
+  }
+  this->Averaging =
+    std::make_unique<RotationAveraging>(mesh.NumberOfVertices(), std::move(edges), this->Laplacian);
+}
+
+void DiscreteFormsMorph::InterpolateRings(
+  const KeyFrames& keys, const std::vector<Matrices>& frames)
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  Field rings(3 * static_cast<Eigen::Index>(mesh.NumberOfDirectedEdges()),
+    static_cast<Eigen::Index>(frames.size()));
+  for (Eigen::Index k = 0; k < rings.cols(); ++k)
+  {
+    const Points& positions = keys.Positions[k];
+    for (int d = 0; d < mesh.NumberOfDirectedEdges(); ++d)
+    {
+      const int v = mesh.Origin(d);
+      rings.block<3, 1>(3 * static_cast<Eigen::Index>(d), k) = MatrixAt(frames[k], v).transpose() *
+        (positions.row(mesh.Neighbor(d)) - positions.row(v)).transpose();
+    }
+  }
+  this->KeyRings = KeyInterpolation(this->Parameters, std::move(rings));
+}
+
+void DiscreteFormsMorph::InterpolateTransitions(const std::vector<Matrices>& frames)
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  const auto numberOfEdges = static_cast<Eigen::Index>(this->Directed.size());
+  Field fromMean(3 * numberOfEdges, static_cast<Eigen::Index>(frames.size()));
+  this->MeanTransitions.resize(numberOfEdges, 9);
+  for (Eigen::Index e = 0; e < numberOfEdges; ++e)
+  {
+    const int i = mesh.Origin(this->Directed[e]);
+    const int j = mesh.Neighbor(this->Directed[e]);
+    // From the mean, so that no key frame counts more than another.
+    Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+    for (const Matrices& ofKey : frames)
+    {
+      mean += MatrixAt(ofKey, i).transpose() * MatrixAt(ofKey, j);
+    }
+    mean = ProjectOnRotations(mean);
+    MatrixAt(this->MeanTransitions, e) = mean;
+    for (Eigen::Index k = 0; k < fromMean.cols(); ++k)
+    {
+      fromMean.block<3, 1>(3 * e, k) = VectorFromRotation(
+        mean.transpose() * MatrixAt(frames[k], i).transpose() * MatrixAt(frames[k], j));
+    }
+  }
+  this->FromMean = KeyInterpolation(this->Parameters, std::move(fromMean));
 }
 
 std::size_t DiscreteFormsMorph::GetBytes() const
 {
-  return this->Forms.GetBytes() + this->FromMean.GetBytes() + this->Averaging->GetBytes() +
-    this->FrameSystem.GetBytes() + this->Known.GetBytes() +
-    TotalBytes(this->Parameters, this->MeanTransitions, this->Directed);
+  return this->KeyLengths.GetBytes() + this->KeyRings.GetBytes() + this->FromMean.GetBytes() +
+    this->Averaging->GetBytes() + this->FrameSystem.GetBytes() + this->Known.GetBytes() +
+    TotalBytes(this->Parameters, this->MeanTransitions, this->Directed, this->Weights);
 }
 
-DiscreteForms DiscreteFormsMorph::FormsAt(double t, const ExecutionContext& context) const
+Eigen::VectorXd DiscreteFormsMorph::LengthsAt(double t, const ExecutionContext& context) const
 {
-  const Eigen::VectorXd values = this->Forms.Evaluate(t, context);
-  const Eigen::Index directedEdges = this->Mesh->NumberOfDirectedEdges();
-  DiscreteForms forms;
-  forms.Length = values.head(directedEdges);
-  forms.Angle = values.segment(directedEdges, directedEdges);
-  forms.Height = values.tail(directedEdges);
+  Eigen::VectorXd lengths = this->KeyLengths.Evaluate(t, context);
   IdSample negative;
-  for (int d = 0; d < directedEdges; ++d)
+  for (Eigen::Index e = 0; e < lengths.size(); ++e)
   {
-    if (forms.Length[d] < 0.0)
+    if (lengths[e] < 0.0)
     {
-      negative.Add(this->Mesh->Origin(d));
+      negative.Add(this->Mesh->Origin(this->Directed[e]));
     }
   }
   if (!negative.IsEmpty())
@@ -167,18 +158,36 @@ DiscreteForms DiscreteFormsMorph::FormsAt(double t, const ExecutionContext& cont
         " edges of negative length would be needed around " + negative.Describe("point", "points") +
         ": choose a parameter nearer to those of the key frames.");
   }
-  return forms;
+  return lengths;
+}
+
+Points DiscreteFormsMorph::RingsAt(
+  double t, const Eigen::VectorXd& lengths, const ExecutionContext& context) const
+{
+  const Eigen::VectorXd values = this->KeyRings.Evaluate(t, context);
+  Points rings = Eigen::Map<const Points>(values.data(), values.size() / 3, 3);
+  for (std::size_t e = 0; e < this->Directed.size(); ++e)
+  {
+    for (const int d : { this->Directed[e], this->Mesh->Twin(this->Directed[e]) })
+    {
+      const double length = rings.row(d).norm();
+      if (length > 0.0)
+      {
+        rings.row(d) *= lengths[static_cast<Eigen::Index>(e)] / length;
+      }
+    }
+  }
+  return rings;
 }
 
 Matrices DiscreteFormsMorph::EdgeTransitionsAt(
-  double t, const DiscreteForms& forms, const ExecutionContext& context) const
+  double t, const Points& rings, const ExecutionContext& context) const
 {
   const int numberOfEdges = static_cast<int>(this->Directed.size());
   Matrices result(numberOfEdges, 9);
   if (this->Method == Transitions::Forms)
   {
-    const cartan::Transitions all =
-      TransitionsFromForms(*this->Mesh, forms, TransitionMethod::Procrustes, context);
+    const cartan::Transitions all = TransitionsFromRings(*this->Mesh, rings, context);
     for (int e = 0; e < numberOfEdges; ++e)
     {
       result.row(e) = all.row(this->Directed[e]);
@@ -216,17 +225,18 @@ Matrices DiscreteFormsMorph::FramesAt(
   constexpr int parts = 8;
   const FrameMemory::Known start = this->Known.Nearest(t);
   Matrices frames = start.Frames;
-  bool isConverged = this->Average(edgeTransitions, frames, context);
+  bool isConverged = this->Average(edgeTransitions, frames, context.Part(0.0, 0.1));
   if (!isConverged)
   {
     frames = start.Frames;
     for (int part = 1; part < parts; ++part)
     {
       const double between = start.Parameter + (t - start.Parameter) * part / parts;
-      this->Average(this->EdgeTransitionsAt(between, this->FormsAt(between, context), context),
-        frames, context);
+      const Points rings = this->RingsAt(between, this->LengthsAt(between, context), context);
+      this->Average(this->EdgeTransitionsAt(between, rings, context), frames,
+        context.Part(0.1 * part, 0.1 * (part + 1)));
     }
-    isConverged = this->Average(edgeTransitions, frames, context);
+    isConverged = this->Average(edgeTransitions, frames, context.Part(0.9, 1.0));
   }
   if (!isConverged)
   {
@@ -237,44 +247,90 @@ Matrices DiscreteFormsMorph::FramesAt(
   return frames;
 }
 
+Matrices DiscreteFormsMorph::LinearFrames(
+  const Matrices& edgeTransitions, Matrices frames, const ExecutionContext& context)
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  cartan::Transitions transitions(mesh.NumberOfDirectedEdges(), 9);
+  for (std::size_t e = 0; e < this->Directed.size(); ++e)
+  {
+    const int d = this->Directed[e];
+    const Eigen::Matrix3d forward = MatrixAt(edgeTransitions, static_cast<Eigen::Index>(e));
+    MatrixAt(transitions, d) = forward;
+    MatrixAt(transitions, mesh.Twin(d)) = forward.transpose();
+  }
+  frames = this->Solver == FrameSolver::Direct
+    ? SolveFrames(mesh, transitions, mesh.Grounded(), std::move(frames), this->FrameSystem, context,
+        this->Weights)
+    : SolveFramesFrom(mesh, transitions, mesh.Grounded(), std::move(frames), *this->Laplacian,
+        &this->Iterations, context, this->Weights);
+  context.For(mesh.NumberOfVertices(),
+    [&](int begin, int end)
+    {
+      for (int v = begin; v < end; ++v)
+      {
+        MatrixAt(frames, v) = ProjectOnRotations(Eigen::Matrix3d(MatrixAt(frames, v)));
+      }
+    });
+  return frames;
+}
+
+void DiscreteFormsMorph::WarnOfLengths(
+  double t, const Eigen::VectorXd& lengths, const Points& positions)
+{
+  constexpr double bound = 0.25;
+  IdSample ends;
+  double worst = 0.0;
+  int worstEdge = 0;
+  for (Eigen::Index e = 0; e < lengths.size(); ++e)
+  {
+    const int d = this->Directed[e];
+    const double length =
+      (positions.row(this->Mesh->Neighbor(d)) - positions.row(this->Mesh->Origin(d))).norm();
+    const double error = std::abs(length - lengths[e]) / std::max(lengths[e], this->Negligible);
+    if (error > bound)
+    {
+      ends.Add(this->Mesh->Origin(d));
+    }
+    if (error > worst)
+    {
+      worst = error;
+      worstEdge = d;
+    }
+  }
+  if (!ends.IsEmpty())
+  {
+    this->Warning += std::string(this->Warning.empty() ? "" : " ") + "At the parameter " +
+      std::to_string(t) + " the length of " + ends.Describe("edge", "edges") +
+      ", ids of the first end points, is off that between the key frames by more than 25 %; from "
+      "point " +
+      std::to_string(this->Mesh->Origin(worstEdge)) + " to point " +
+      std::to_string(this->Mesh->Neighbor(worstEdge)) + " it is by " +
+      std::to_string(std::lround(100.0 * worst)) +
+      " %. Try the Isometric method, or add a key frame in between.";
+  }
+}
+
 Points DiscreteFormsMorph::Evaluate(double t, const ExecutionContext& context)
 {
   const TriangleMesh& mesh = *this->Mesh;
   this->Iterations = 0;
   this->Warning.clear();
-  const DiscreteForms forms = this->FormsAt(t, context);
-  const Points ring = RingCoordinates(mesh, forms);
-  const Matrices edgeTransitions = this->EdgeTransitionsAt(t, forms, context);
-  Matrices frames = this->FramesAt(t, edgeTransitions, context.Part(0.1, 0.7));
-
+  const Eigen::VectorXd lengths = this->LengthsAt(t, context);
+  const Points rings = this->RingsAt(t, lengths, context);
+  const Matrices edgeTransitions = this->EdgeTransitionsAt(t, rings, context);
+  const bool isLinear = this->Solver != FrameSolver::RotationAveraging;
+  Matrices frames = this->FramesAt(t, edgeTransitions, context.Part(0.1, isLinear ? 0.4 : 0.8));
   this->Known.SetLast(t, frames);
-
-  if (this->Solver != FrameSolver::RotationAveraging)
+  if (isLinear)
   {
-    cartan::Transitions transitions(mesh.NumberOfDirectedEdges(), 9);
-    for (std::size_t e = 0; e < this->Directed.size(); ++e)
-    {
-      const int d = this->Directed[e];
-      const Eigen::Matrix3d forward = MatrixAt(edgeTransitions, static_cast<Eigen::Index>(e));
-      MatrixAt(transitions, d) = forward;
-      MatrixAt(transitions, mesh.Twin(d)) = forward.transpose();
-    }
-    frames = this->Solver == FrameSolver::Direct
-      ? SolveFrames(
-          mesh, transitions, mesh.Grounded(), std::move(frames), this->FrameSystem, context)
-      : SolveFramesFrom(mesh, transitions, mesh.Grounded(), std::move(frames), *this->Laplacian,
-          &this->Iterations, context);
-    context.For(mesh.NumberOfVertices(),
-      [&](int begin, int end)
-      {
-        for (int v = begin; v < end; ++v)
-        {
-          MatrixAt(frames, v) = ProjectOnRotations(Eigen::Matrix3d(MatrixAt(frames, v)));
-        }
-      });
+    frames = this->LinearFrames(edgeTransitions, std::move(frames), context.Part(0.4, 0.8));
   }
+  context.Report(0.8);
   Field positions = Field::Zero(mesh.NumberOfVertices(), 3);
-  this->Laplacian->Solve(PositionRightHandSide(mesh, frames, ring, context), positions);
+  this->Laplacian->Solve(
+    PositionRightHandSide(mesh, frames, rings, context, this->Weights), positions);
+  this->WarnOfLengths(t, lengths, positions);
   context.Report(1.0);
   return positions;
 }
