@@ -6,7 +6,7 @@ set(paraview_components RemotingCore pqApplicationComponents)
 set(vtk_components
   CommonCore CommonDataModel CommonExecutionModel CommonMath CommonSystem
   FiltersCore FiltersExtraction ParallelCore
-  CommonTransforms FiltersSources IOXML TestingCore # the tests
+  CommonComputationalGeometry CommonTransforms FiltersSources IOXML TestingCore # the tests
   WrappingPythonCore)
 
 if (NOT DEFINED CARTAN_BUILD_PLUGIN)

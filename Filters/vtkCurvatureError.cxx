@@ -14,7 +14,9 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -42,6 +44,33 @@ void AddCurvatures(vtkPolyData* output, const cartan::Curvatures& curvatures, bo
     cartan::AddPointArray(output, "MinimumCurvatureDirection", curvatures.MinimumDirections.data(),
       curvatures.MinimumDirections.rows(), 3);
   }
+  vtkNew<vtkUnsignedCharArray> isDetermined;
+  isDetermined->SetName("CurvatureIsDetermined");
+  isDetermined->SetNumberOfValues(static_cast<vtkIdType>(curvatures.IsDetermined.size()));
+  std::copy(
+    curvatures.IsDetermined.begin(), curvatures.IsDetermined.end(), isDetermined->GetPointer(0));
+  output->GetPointData()->AddArray(isDetermined);
+}
+
+/// Empty where every point's curvature is determined. `which` is the input or
+/// the reference.
+std::string DescribeUndetermined(const cartan::Curvatures& curvatures, const std::string& which)
+{
+  cartan::IdSample undetermined;
+  for (std::size_t v = 0; v < curvatures.IsDetermined.size(); ++v)
+  {
+    if (!curvatures.IsDetermined[v])
+    {
+      undetermined.Add(static_cast<long long>(v));
+    }
+  }
+  return undetermined.IsEmpty() ? std::string()
+                                : "The curvature of the " + which + " is not determined at " +
+      undetermined.Describe("point", "points") +
+      ": the points around lie in fewer than three rows in some direction. There it is "
+      "estimated from the normals of the triangles, with edges that join two rows taken as "
+      "straight. For reliable values use at least three evenly spaced rows of points in every "
+      "direction.";
 }
 
 double AddFieldValue(vtkPolyData* output, const std::string& name, double value)
@@ -118,6 +147,7 @@ int vtkCurvatureError::RequestData(
         cartan::Warn(this, surface.Warning);
         const cartan::Curvatures curvatures =
           cartan::FitCurvatures(surface.Mesh, surface.Positions, context);
+        cartan::Warn(this, DescribeUndetermined(curvatures, "input"));
         output->ShallowCopy(input);
         AddCurvatures(output, curvatures, this->ComputeDirections);
         output->GetPointData()->SetActiveScalars("MeanCurvature");
@@ -130,6 +160,8 @@ int vtkCurvatureError::RequestData(
         cartan::FitCurvatures(pair.Mesh, pair.Reference, context.Part(0.0, 0.5));
       const cartan::Curvatures now =
         cartan::FitCurvatures(pair.Mesh, pair.Current, context.Part(0.5, 1.0));
+      cartan::Warn(this, DescribeUndetermined(before, "reference"));
+      cartan::Warn(this, DescribeUndetermined(now, "input"));
       const Eigen::VectorXd areas = cartan::MixedVoronoiAreas(pair.Mesh, pair.Reference, context);
 
       output->ShallowCopy(input);

@@ -22,6 +22,11 @@
  * - `MaximumCurvatureDirection`, `MinimumCurvatureDirection` (3 components,
  *   only with ComputeDirections): unit tangent vectors. Their sign is
  *   arbitrary, and where k1 = k2 the directions are too.
+ * - `CurvatureIsDetermined` (unsigned char): 0 where the points around lie in
+ *   fewer than three rows in some direction, as on the side of a
+ *   vtkCylinderSource, and leave the curvature open. There it is estimated from
+ *   the normals of the triangles, with edges between two rows taken as straight,
+ *   and a warning gives the number and the first ids. 1 elsewhere.
  * - `MeanCurvatureError`, `GaussianCurvatureError` (with a reference): the
  *   surface's curvature minus the reference's.
  * The active point scalars, by which viewers color the surface, are

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <thread>
+#include <vector>
 
 using namespace cartan;
 
@@ -76,6 +77,31 @@ double Order(const std::function<shapes::Shape(int refinement)>& make, const Exa
 Curvatures Fit(const shapes::Shape& shape)
 {
   return FitCurvatures(TriangleMesh(shape.NumberOfVertices(), shape.Faces), shape.Positions);
+}
+
+/// A surface of revolution about the z axis through rings of `around` points,
+/// with these radii and heights.
+shapes::Shape Turned(
+  int around, const std::vector<double>& radii, const std::vector<double>& heights)
+{
+  shapes::PatchOptions options;
+  options.CountU = around;
+  options.CountV = static_cast<int>(radii.size()) - 1;
+  options.PeriodicU = true;
+  return shapes::Patch(options,
+    [&](double u, double v)
+    {
+      const auto ring = static_cast<std::size_t>(std::lround(v * options.CountV));
+      return Eigen::Vector3d(radii[ring] * std::cos(2 * shapes::Pi * u),
+        radii[ring] * std::sin(2 * shapes::Pi * u), heights[ring]);
+    });
+}
+
+/// How many vertices' curvatures are open.
+int CountOpen(const Curvatures& curvatures)
+{
+  return static_cast<int>(
+    std::count(curvatures.IsDetermined.begin(), curvatures.IsDetermined.end(), 0));
 }
 
 bool AllFinite(const Curvatures& curvatures)
@@ -175,6 +201,88 @@ TEST(Curvature, LongThinTrianglesAreNoObstacle)
 {
   // The quads are 20 times as long as wide, and four make half a tube.
   EXPECT_LT(LargestError(shapes::Torus(720, 24), OnTorus), 0.06);
+}
+
+TEST(Curvature, CylindersAreExactWhateverTheirTriangles)
+{
+  for (const int around : { 6, 7, 10, 24, 200 })
+  {
+    for (const double row : { 0.02, 0.3, 3.0 })
+    {
+      const shapes::Shape tube = Turned(
+        around, { 1, 1, 1, 1, 1, 1 }, { 0.0, row, 2.0 * row, 3.0 * row, 4.0 * row, 5.0 * row });
+      const Curvatures curvatures = Fit(tube);
+      EXPECT_LT((curvatures.Maximum.array() - 1.0).abs().maxCoeff(), 0.05) << around << " " << row;
+      EXPECT_LT(curvatures.Minimum.cwiseAbs().maxCoeff(), 0.05) << around << " " << row;
+      EXPECT_EQ(CountOpen(curvatures), 0) << around << " " << row;
+    }
+  }
+  const Curvatures fine = Fit(shapes::OpenCylinder(80, 40, 1.0, 3.0, 0.3));
+  EXPECT_LT((fine.Maximum.array() - 1.0).abs().maxCoeff(), 2e-4);
+}
+
+TEST(Curvature, TwoRowsLeaveItOpenAndAreTakenAsStraight)
+{
+  for (const int around : { 6, 24, 200 })
+  {
+    for (const double length : { 0.1, 2.0, 1000.0 })
+    {
+      const Curvatures cylinder = Fit(Turned(around, { 1, 1 }, { 0, length }));
+      EXPECT_LT((cylinder.Maximum.array() - 1.0).abs().maxCoeff(), 0.02);
+      EXPECT_LT(cylinder.Minimum.cwiseAbs().maxCoeff(), 0.02);
+      EXPECT_EQ(CountOpen(cylinder), 2 * around);
+    }
+  }
+  // A cone of 45 degrees.
+  for (const int around : { 32, 128 })
+  {
+    const shapes::Shape cone = Turned(around, { 5, 1 }, { 0, 4 });
+    const Curvatures curvatures = Fit(cone);
+    EXPECT_EQ(CountOpen(curvatures), 2 * around);
+    for (int v = 0; v < cone.NumberOfVertices(); ++v)
+    {
+      const double radius = cone.Positions.row(v).head<2>().norm();
+      EXPECT_NEAR(curvatures.Maximum[v], std::sqrt(0.5) / radius, 0.03);
+      EXPECT_NEAR(curvatures.Minimum[v], 0.0, 0.03);
+    }
+  }
+}
+
+TEST(Curvature, MoreRingsDetermineWhatTwoLeaveOpen)
+{
+  // Three rows close together: the third ring brings the fourth row.
+  const Curvatures graded =
+    Fit(Turned(24, { 1, 1, 1, 1, 1, 1 }, { 0.0, 0.02, 0.04, 0.5, 1.0, 1.5 }));
+  EXPECT_LT((graded.Maximum.array() - 1.0).abs().maxCoeff(), 0.02);
+  EXPECT_LT(graded.Minimum.cwiseAbs().maxCoeff(), 0.02);
+}
+
+TEST(Curvature, OpenOnlyWhereItIs)
+{
+  for (const shapes::Shape& shape : { shapes::Torus(24, 16), shapes::Torus(24, 16, 2.0, 0.7, 0.3),
+         shapes::Torus(720, 24), shapes::Saddle(10, 2.0, 0.3), shapes::Icosphere(0),
+         shapes::UvSphere(8, 5), shapes::UvSphere(200, 9), shapes::Plane(1),
+         shapes::Plane(6, 1.0, 0.3), shapes::Ellipsoid(2, HalfAxes), shapes::OpenCylinder(12, 2) })
+  {
+    EXPECT_EQ(CountOpen(Fit(shape)), 0);
+  }
+}
+
+TEST(Curvature, NextToARightAngledEdgeIsFlat)
+{
+  const shapes::Shape bar = shapes::Bar(6, 6, 12, { 1, 1, 2 });
+  const Curvatures curvatures = Fit(bar);
+  for (int v = 0; v < bar.NumberOfVertices(); ++v)
+  {
+    const Eigen::RowVector3d p = bar.Positions.row(v);
+    const Eigen::Array3d toFaces(
+      0.5 - std::abs(p[0]), 0.5 - std::abs(p[1]), 1.0 - std::abs(p[2] - 1.0));
+    if ((toFaces < 1e-9).count() == 1)
+    {
+      EXPECT_LT(std::abs(curvatures.Maximum[v]), 1e-9);
+      EXPECT_LT(std::abs(curvatures.Minimum[v]), 1e-9);
+    }
+  }
 }
 
 TEST(Curvature, SmallNoiseChangesLittle)

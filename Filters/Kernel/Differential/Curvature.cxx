@@ -1,229 +1,104 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/Curvature.h"
 
+#include "Differential/SurfaceFit.h"
 #include "Mesh/Geometry.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace cartan
 {
 namespace
 {
-/// A cubic has nine coefficients without its constant one; a few points more
-/// than that let the fit average.
-constexpr int MinimumPoints = 12;
-
-/// Bounds the work at vertices with many neighbors and on very anisotropic
-/// triangles. Twice as many have not made any error of our tests smaller.
-constexpr int MaximumPoints = 64;
-
-/// Of a vertex with more neighbors than this, such as the pole of a sphere,
-/// only evenly spaced ones are taken: all of them would turn every
-/// neighborhood next to it into that one fan.
-constexpr int MaximumFan = 32;
-
 /// How much is done between two reports of progress: about a quarter of a
 /// second.
 constexpr int VerticesPerReport = 50000;
 
-/// Neighborhoods of fewer points than MinimumPoints grow at most this far.
-constexpr int MaximumRings = 5;
-
-/// The points a surface is fitted to around one vertex. Reused from vertex to
-/// vertex, so that nothing is allocated in the loop.
-class Neighborhood
-{
-public:
-  Neighborhood(const TriangleMesh& mesh, const Points& points)
-    : Mesh(mesh)
-    , Positions(points)
-  {
-  }
-
-  /// The two-ring of v, more rings where these are too few points (at borders),
-  /// and what is connected with v inside the ball through its farthest
-  /// neighbor. The ball makes up for long thin triangles, whose two-ring is
-  /// just as long and thin and says little about bending the other way.
-  void Collect(int v)
-  {
-    this->Count = 0;
-    this->Add(v);
-    int begin = 0;
-    for (int ring = 0; ring < 2 || (ring < MaximumRings && this->Count <= MinimumPoints); ++ring)
-    {
-      const int end = this->Count;
-      for (; begin < end; ++begin)
-      {
-        this->ForFan(this->Ids[begin], [this](int w) { this->Add(w); });
-      }
-    }
-
-    const Eigen::RowVector3d center = this->Positions.row(v);
-    double radius = 0.0;
-    this->ForFan(v,
-      [&](int w) { radius = std::max(radius, (this->Positions.row(w) - center).squaredNorm()); });
-    // Equal distances, as in a regular grid, must not be told apart by rounding.
-    radius *= 1.0001;
-    for (int i = 1; i < this->Count; ++i)
-    {
-      if ((this->Positions.row(this->Ids[i]) - center).squaredNorm() <= radius)
-      {
-        this->ForFan(this->Ids[i],
-          [&](int w)
-          {
-            if ((this->Positions.row(w) - center).squaredNorm() <= radius)
-            {
-              this->Add(w);
-            }
-          });
-      }
-    }
-  }
-
-  /// Without the vertex itself.
-  int Size() const { return this->Count - 1; }
-  int operator[](int i) const { return this->Ids[i + 1]; }
-
-private:
-  template <typename Visitor>
-  void ForFan(int v, Visitor visit) const
-  {
-    const int step = (this->Mesh.Valence(v) + MaximumFan - 1) / MaximumFan;
-    for (int d = this->Mesh.RingBegin(v); d < this->Mesh.RingEnd(v); d += step)
-    {
-      visit(this->Mesh.Neighbor(d));
-    }
-  }
-
-  void Add(int v)
-  {
-    const auto end = this->Ids.begin() + this->Count;
-    if (this->Count < static_cast<int>(this->Ids.size()) &&
-      std::find(this->Ids.begin(), end, v) == end)
-    {
-      this->Ids[this->Count++] = v;
-    }
-  }
-
-  const TriangleMesh& Mesh;
-  const Points& Positions;
-  std::array<int, MaximumPoints + 1> Ids;
-  int Count = 0;
-};
-
-/// The second fundamental form in an orthonormal frame (u, v, normal), with the
-/// sign that makes an outward-oriented sphere positive.
-struct SecondForm
-{
-  Eigen::Vector3d Normal;
-  Eigen::Vector3d U;
-  Eigen::Vector3d V;
-  double Uu = 0.0;
-  double Uv = 0.0;
-  double Vv = 0.0;
-};
-
-/// Regularization, relative to the number of points. In coordinates of unit
-/// variance the third derivatives are of the size of one mean distance over the
-/// radius of curvature. This much leaves them alone in a full two-ring and
-/// gives way to a quadric where the points do not determine them.
-constexpr double CubicRidge = 1e-3;
-
-/// Enough for a solution that rounding cannot move where not even a quadric is
-/// determined (few points, or all in two rows), too little to be seen elsewhere.
+/// Enough for a solution that rounding cannot move where the neighbors leave
+/// part of the form open, too little to be seen elsewhere.
 constexpr double TinyRidge = 1e-10;
 
-/// The height over the chord-length coordinates of Curvature.h, as a cubic
-/// without a constant, in the plane through `center` normal to `normal`. False
-/// if the points coincide.
-bool FitSecondForm(const Points& points, const Eigen::RowVector3d& center,
-  const Neighborhood& neighborhood, const Eigen::Vector3d& normal, SecondForm& form)
+/// How often normal curvatures are fitted, each time in the normal and with the
+/// chord lengths of the time before: the normal converges by a factor of ten or
+/// more.
+constexpr int NormalCurvatureFits = 4;
+
+/// A neighborhood is flat, whatever its points leave open, if its normal turns
+/// by less than this from the vertex to the farthest point, in radians. Single
+/// precision coordinates leave 1e-6 in a flat polygon.
+constexpr double FlatTurn = 1e-4;
+
+/// The mean of the normals of the triangles at v by their angles there, which
+/// does not depend on how polygons are triangulated. An angle near pi, of a
+/// cap, whose normal is not known well, counts as a small one. Zero where the
+/// triangles cancel out.
+Eigen::Vector3d AngleWeightedNormal(const TriangleMesh& mesh, const Points& points, int v)
 {
-  // Axes along which the coordinates are uncorrelated, scaled to unit variance.
-  Eigen::Vector3d a = normal.unitOrthogonal();
-  Eigen::Vector3d b = normal.cross(a);
-  double aa = 0.0;
-  double ab = 0.0;
-  double bb = 0.0;
-  for (int i = 0; i < neighborhood.Size(); ++i)
+  constexpr double Pi = 3.14159265358979323846;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
   {
-    const Eigen::Vector3d offset = (points.row(neighborhood[i]) - center).transpose();
-    const double x = offset.dot(a);
-    const double y = offset.dot(b);
-    aa += x * x;
-    ab += x * y;
-    bb += y * y;
+    const int next = mesh.NextAround(v, d);
+    if (next >= 0)
+    {
+      const Eigen::Vector3d a = (points.row(mesh.Neighbor(d)) - points.row(v)).transpose();
+      const Eigen::Vector3d b = (points.row(mesh.Neighbor(next)) - points.row(v)).transpose();
+      const Eigen::Vector3d areaVector = a.cross(b);
+      const double angle = std::atan2(areaVector.norm(), a.dot(b));
+      sum += std::min(angle, 2.0 * (Pi - angle)) * areaVector.normalized();
+    }
   }
-  const double turn = 0.5 * std::atan2(2.0 * ab, aa - bb);
-  a = std::cos(turn) * a + std::sin(turn) * b;
-  b = normal.cross(a);
-  const double mean = 0.5 * (aa + bb);
-  const double spread = std::hypot(0.5 * (aa - bb), ab);
-  if (!(mean > 0.0))
+  return sum.normalized();
+}
+
+/// The form at v by a cubic. False where even five rings leave it open.
+bool FitDetermined(
+  Neighborhood& neighborhood, int v, const Eigen::Vector3d& normal, SecondForm& form)
+{
+  neighborhood.CollectBall(v);
+  for (int rings = 3; Determination(neighborhood, normal) < LeastDetermination; ++rings)
+  {
+    if (rings > Neighborhood::MaximumRings)
+    {
+      return false;
+    }
+    neighborhood.CollectRings(v, rings);
+  }
+  // The first fit finds the normal and how chords are measured, the second one
+  // the curvature.
+  SecondForm first;
+  return FitCubic(neighborhood, normal, nullptr, first) &&
+    FitCubic(neighborhood, first.Normal, &first, form);
+}
+
+/// The form at v where a cubic is not determined, from the nearest points and
+/// the triangles' normals. False where it is a guess, other than on a plane, and
+/// zero where there is not even that.
+bool FitOpen(Neighborhood& neighborhood, int v, const Eigen::Vector3d& normal, SecondForm& form)
+{
+  neighborhood.CollectNearest(v);
+  SecondForm found;
+  bool isFound = FitNormalCurvatures(neighborhood, normal, nullptr, found);
+  for (int i = 1; i < NormalCurvatureFits && isFound; ++i)
+  {
+    const SecondForm earlier = found;
+    isFound = FitNormalCurvatures(neighborhood, earlier.Normal, &earlier, found);
+  }
+  if (!isFound)
   {
     return false;
   }
-  // Where all points are in one line the other direction gets no say.
-  const double scaleA = std::sqrt((mean + spread) / neighborhood.Size());
-  const double scaleB =
-    std::max(std::sqrt(std::max(mean - spread, 0.0) / neighborhood.Size()), 1e-6 * scaleA);
-
-  using Vector9 = Eigen::Matrix<double, 9, 1>;
-  using Matrix9 = Eigen::Matrix<double, 9, 9>;
-  Matrix9 matrix = Matrix9::Zero();
-  Vector9 rightHandSide = Vector9::Zero();
+  form = found;
+  double radius = 0.0;
   for (int i = 0; i < neighborhood.Size(); ++i)
   {
-    const Eigen::Vector3d offset = (points.row(neighborhood[i]) - center).transpose();
-    const double height = offset.dot(normal);
-    const double planarX = offset.dot(a);
-    const double planarY = offset.dot(b);
-    // A point straight above the vertex has no direction in the plane; the
-    // bound keeps it from deciding alone.
-    const double planar = std::hypot(planarX, planarY);
-    const double stretch = std::min(offset.norm(), 3.0 * planar);
-    const double toChord = planar > 0.0 ? stretch / planar : 1.0;
-    const double x = toChord * planarX / scaleA;
-    const double y = toChord * planarY / scaleB;
-    Vector9 monomials;
-    monomials << planarX / scaleA, planarY / scaleB, 0.5 * x * x, x * y, 0.5 * y * y,
-      x * x * x / 6.0, 0.5 * x * x * y, 0.5 * x * y * y, y * y * y / 6.0;
-    matrix.selfadjointView<Eigen::Lower>().rankUpdate(monomials);
-    rightHandSide += height * monomials;
+    radius = std::max(radius, neighborhood.Offset(i).norm());
   }
-  // The Frobenius norms of the derivative tensors, in which a mixed derivative
-  // occurs several times: they do not depend on the choice of axes.
-  Vector9 ridge;
-  ridge << TinyRidge, TinyRidge, TinyRidge, 2.0 * TinyRidge, TinyRidge, CubicRidge,
-    3.0 * CubicRidge, 3.0 * CubicRidge, CubicRidge;
-  matrix.diagonal() += neighborhood.Size() * ridge;
-  const Vector9 fit = matrix.ldlt().solve(rightHandSide);
-
-  const double slopeA = fit[0] / scaleA;
-  const double slopeB = fit[1] / scaleB;
-  const double hessianAa = fit[2] / (scaleA * scaleA);
-  const double hessianAb = fit[3] / (scaleA * scaleB);
-  const double hessianBb = fit[4] / (scaleB * scaleB);
-
-  // From the graph of a function to an orthonormal frame: u along the surface
-  // over a, and v = n x u, which is (r_b - (F / E) r_a) / sqrt(G - F^2 / E) with
-  // the first form E, F, G of the tangents r_a, r_b.
-  const double e = 1.0 + slopeA * slopeA;
-  const double shear = slopeA * slopeB / e;
-  const double width = 1.0 + slopeB * slopeB - shear * slopeA * slopeB;
-  const double size = std::sqrt(1.0 + slopeA * slopeA + slopeB * slopeB);
-  form.Normal = (normal - slopeA * a - slopeB * b) / size;
-  form.U = (a + slopeA * normal) / std::sqrt(e);
-  form.V = form.Normal.cross(form.U);
-  form.Uu = -hessianAa / (size * e);
-  form.Uv = -(hessianAb - shear * hessianAa) / (size * std::sqrt(e * width));
-  form.Vv = -(hessianBb - 2.0 * shear * hessianAb + shear * shear * hessianAa) / (size * width);
-  return std::isfinite(form.Uu * form.Vv) && std::isfinite(form.Uv * form.Uv);
+  return radius * std::hypot(form.Uu, form.Uv, form.Vv) < FlatTurn;
 }
 
 void Store(const SecondForm& form, int v, Curvatures& curvatures)
@@ -249,6 +124,7 @@ Curvatures Zero(int numberOfVertices)
   curvatures.Minimum.setZero(numberOfVertices);
   curvatures.MaximumDirections.setZero(numberOfVertices, 3);
   curvatures.MinimumDirections.setZero(numberOfVertices, 3);
+  curvatures.IsDetermined.assign(numberOfVertices, 1);
   return curvatures;
 }
 }
@@ -260,21 +136,19 @@ Curvatures FitCurvatures(
   Curvatures curvatures = Zero(mesh.NumberOfVertices());
   const auto fit = [&](int begin, int end)
   {
-    Neighborhood neighborhood(mesh, points);
+    Neighborhood neighborhood(mesh, points, normals);
     for (int v = begin; v < end; ++v)
     {
-      if (normals.row(v).isZero(0.0))
-      {
-        continue;
-      }
-      neighborhood.Collect(v);
-      // The first fit finds the normal, the second one the curvature in it.
+      const Eigen::Vector3d normal = normals.row(v).transpose();
       SecondForm form;
-      if (FitSecondForm(points, points.row(v), neighborhood, normals.row(v), form) &&
-        FitSecondForm(points, points.row(v), neighborhood, Eigen::Vector3d(form.Normal), form))
+      bool isDetermined = !normal.isZero(0.0) && FitDetermined(neighborhood, v, normal, form);
+      if (!isDetermined && !normal.isZero(0.0))
       {
-        Store(form, v, curvatures);
+        const Eigen::Vector3d byAngles = AngleWeightedNormal(mesh, points, v);
+        isDetermined = FitOpen(neighborhood, v, byAngles.isZero(0.0) ? normal : byAngles, form);
       }
+      curvatures.IsDetermined[v] = isDetermined || !mesh.IsUsed(v);
+      Store(form, v, curvatures);
     }
   };
   for (int first = 0; first < mesh.NumberOfVertices(); first += VerticesPerReport)

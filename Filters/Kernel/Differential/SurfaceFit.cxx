@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Differential/SurfaceFit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cartan
+{
+namespace
+{
+/// Of a vertex with more neighbors than this, such as the pole of a sphere,
+/// only evenly spaced ones are taken: all of them would turn every
+/// neighborhood next to it into that one fan.
+constexpr int MaximumFan = 32;
+
+/// Cosines of the turn of the normal beyond which a point is left out. In the
+/// second ring 78 degrees: what is next to a right-angled edge must not see its
+/// other side. Farther out 61, since it may be the other side of a tube; a bit
+/// more than 60, the turn between the sides of a hexagon, so that rounding
+/// decides nothing.
+constexpr double SecondRingCosine = 0.2;
+constexpr double FarCosine = 0.485;
+
+/// 37 degrees, a bit more than those between the sides of a decagon. Circles
+/// that turn farther leave their tangent so much that they seem to say more
+/// about the other direction than they do.
+constexpr double CloseCosine = 0.8;
+
+constexpr double AnyCosine = -2.0;
+constexpr double AnyDistance = std::numeric_limits<double>::infinity();
+
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+
+/// Regularization, relative to the number of points. In coordinates of unit
+/// variance the third derivatives are of the size of one mean distance over the
+/// radius of curvature. This much leaves them alone in a full two-ring and
+/// gives way to a quadric where the points do not determine them.
+constexpr double CubicRidge = 1e-3;
+
+/// Enough for a solution that rounding cannot move where not even a quadric is
+/// determined, too little to be seen elsewhere.
+constexpr double TinyRidge = 1e-10;
+
+/// Regularization of the fit of normal curvatures, relative to the sum of
+/// squares of all terms of the same order. A slope that a curvature can stand
+/// for as well gives way to it, since the normal is known, and so does a third
+/// derivative; both are free where the points determine them. Values three
+/// times as large or small make little difference.
+constexpr double SlopeShare = 0.03;
+constexpr double CurvatureShare = 1e-8;
+constexpr double CubicShare = 0.1;
+
+/// Axes in the plane normal to Normal along which the coordinates of the points
+/// are uncorrelated, and the lengths that are units along them.
+struct PlaneAxes
+{
+  Eigen::Vector3d Normal;
+  Eigen::Vector3d A;
+  Eigen::Vector3d B;
+  double UnitA = 0.0;
+  double UnitB = 0.0;
+
+  /// Units of one standard deviation about the vertex. False if the points
+  /// coincide.
+  bool Fit(const Neighborhood& neighborhood, const Eigen::Vector3d& normal);
+
+  /// The derivatives of the height along the axes become the form on the
+  /// surface. False where they are no numbers.
+  bool ToSecondForm(const Vector9& fit, SecondForm& form) const;
+};
+
+bool PlaneAxes::Fit(const Neighborhood& neighborhood, const Eigen::Vector3d& normal)
+{
+  this->Normal = normal;
+  this->A = normal.unitOrthogonal();
+  this->B = normal.cross(this->A);
+  double aa = 0.0;
+  double ab = 0.0;
+  double bb = 0.0;
+  for (int i = 0; i < neighborhood.Size(); ++i)
+  {
+    const double x = neighborhood.Offset(i).dot(this->A);
+    const double y = neighborhood.Offset(i).dot(this->B);
+    aa += x * x;
+    ab += x * y;
+    bb += y * y;
+  }
+  const double turn = 0.5 * std::atan2(2.0 * ab, aa - bb);
+  this->A = std::cos(turn) * this->A + std::sin(turn) * this->B;
+  this->B = normal.cross(this->A);
+  const double mean = 0.5 * (aa + bb);
+  const double spread = std::hypot(0.5 * (aa - bb), ab);
+  // Where all points are in one line the other direction gets no say.
+  this->UnitA = std::sqrt((mean + spread) / neighborhood.Size());
+  this->UnitB =
+    std::max(std::sqrt(std::max(mean - spread, 0.0) / neighborhood.Size()), 1e-6 * this->UnitA);
+  return mean > 0.0;
+}
+
+bool PlaneAxes::ToSecondForm(const Vector9& fit, SecondForm& form) const
+{
+  const double slopeA = fit[0] / this->UnitA;
+  const double slopeB = fit[1] / this->UnitB;
+  const double hessianAa = fit[2] / (this->UnitA * this->UnitA);
+  const double hessianAb = fit[3] / (this->UnitA * this->UnitB);
+  const double hessianBb = fit[4] / (this->UnitB * this->UnitB);
+
+  // From the graph of a function to an orthonormal frame: u along the surface
+  // over a, and v = n x u, which is (r_b - (F / E) r_a) / sqrt(G - F^2 / E) with
+  // the first form E, F, G of the tangents r_a, r_b.
+  const double e = 1.0 + slopeA * slopeA;
+  const double shear = slopeA * slopeB / e;
+  const double width = 1.0 + slopeB * slopeB - shear * slopeA * slopeB;
+  const double size = std::sqrt(1.0 + slopeA * slopeA + slopeB * slopeB);
+  form.Normal = (this->Normal - slopeA * this->A - slopeB * this->B) / size;
+  form.U = (this->A + slopeA * this->Normal) / std::sqrt(e);
+  form.V = form.Normal.cross(form.U);
+  form.Uu = -hessianAa / (size * e);
+  form.Uv = -(hessianAb - shear * hessianAa) / (size * std::sqrt(e * width));
+  form.Vv = -(hessianBb - 2.0 * shear * hessianAb + shear * shear * hessianAa) / (size * width);
+  return std::isfinite(form.Uu * form.Vv) && std::isfinite(form.Uv * form.Uv);
+}
+
+/// The monomials of the cubic without a constant: slopes in the plane, the
+/// higher ones in chord-length coordinates.
+Vector9 Monomials(const Eigen::Vector3d& offset, const PlaneAxes& axes, const SecondForm* earlier)
+{
+  const double planarX = offset.dot(axes.A);
+  const double planarY = offset.dot(axes.B);
+  double x = planarX;
+  double y = planarY;
+  if (earlier)
+  {
+    const Eigen::Vector3d correction = earlier->ChordCorrection(offset);
+    x += correction.dot(axes.A);
+    y += correction.dot(axes.B);
+  }
+  else
+  {
+    // A point straight above the vertex has no direction in the plane; the
+    // bound keeps it from deciding alone.
+    const double planar = std::sqrt(planarX * planarX + planarY * planarY);
+    const double toChord = planar > 0.0 ? std::min(offset.norm() / planar, 3.0) : 1.0;
+    x *= toChord;
+    y *= toChord;
+  }
+  x /= axes.UnitA;
+  y /= axes.UnitB;
+  Vector9 monomials;
+  monomials << planarX / axes.UnitA, planarY / axes.UnitB, 0.5 * x * x, x * y, 0.5 * y * y,
+    x * x * x / 6.0, 0.5 * x * x * y, 0.5 * x * y * y, y * y * y / 6.0;
+  return monomials;
+}
+
+/// The squared distance within which a quarter of the points is, without those
+/// in the same place up to single precision.
+double NearQuarterSquared(const Neighborhood& neighborhood)
+{
+  std::array<double, Neighborhood::MaximumPoints> squares;
+  double farthest = 0.0;
+  for (int i = 0; i < neighborhood.Size(); ++i)
+  {
+    squares[i] = neighborhood.Offset(i).squaredNorm();
+    farthest = std::max(farthest, squares[i]);
+  }
+  const auto end = std::remove_if(squares.begin(), squares.begin() + neighborhood.Size(),
+    [&](double square) { return square <= 1e-12 * farthest; });
+  const auto quarter = squares.begin() + (end - squares.begin()) / 4;
+  std::nth_element(squares.begin(), quarter, end);
+  return *quarter;
+}
+}
+
+Eigen::Vector3d SecondForm::ChordCorrection(const Eigen::Vector3d& offset) const
+{
+  const double u = offset.dot(this->U);
+  const double v = offset.dot(this->V);
+  const double turnU = this->Uu * u + this->Uv * v;
+  const double turnV = this->Uv * u + this->Vv * v;
+  const double turn = std::sqrt(turnU * turnU + turnV * turnV);
+  const double planar = std::sqrt(u * u + v * v);
+  if (!(turn * planar > 0.0) || offset.dot(this->Normal) == 0.0)
+  {
+    return Eigen::Vector3d::Zero();
+  }
+  // On a circle h / t is the tangent of half the turn, which the turn that the
+  // form says bounds up to 120 degrees. Where the form is no circle's, as along
+  // the asymptotic directions of a saddle, t may be anything, and of either
+  // sign; there the correction fades out.
+  const double height = std::abs(offset.dot(this->Normal));
+  const double along = (turnU * u + turnV * v) / turn;
+  const double bound = turn * offset.norm() / planar;
+  const double tangent = height < bound * std::abs(along)
+    ? height / std::abs(along)
+    : bound * bound * std::abs(along) / height;
+  // (t^2 + h^2)^1/2 - t = h tan(turn / 4).
+  const double longer = height * tangent / (1.0 + std::sqrt(1.0 + tangent * tangent));
+  return std::copysign(longer / turn, along) * (turnU * this->U + turnV * this->V);
+}
+
+void Neighborhood::Start(int v)
+{
+  this->Ids[0] = v;
+  this->Offsets[0].setZero();
+  this->Count = 1;
+  this->AddFan(v, AnyCosine, AnyDistance);
+  this->CountWithOneRing = this->Count;
+}
+
+bool Neighborhood::IsClose(int i) const
+{
+  return i + 1 < this->CountWithOneRing || this->Cosines[i + 1] > CloseCosine;
+}
+
+void Neighborhood::AddFan(int v, double minimumCosine, double maximumSquaredDistance)
+{
+  const int step = (this->Mesh.Valence(v) + MaximumFan - 1) / MaximumFan;
+  for (int d = this->Mesh.RingBegin(v); d < this->Mesh.RingEnd(v); d += step)
+  {
+    const int w = this->Mesh.Neighbor(d);
+    const auto end = this->Ids.begin() + this->Count;
+    if (end == this->Ids.end() || std::find(this->Ids.begin(), end, w) != end)
+    {
+      continue;
+    }
+    const double cosine = this->Normals.row(this->Ids[0]).dot(this->Normals.row(w));
+    const Eigen::Vector3d offset =
+      (this->Positions.row(w) - this->Positions.row(this->Ids[0])).transpose();
+    if (cosine > minimumCosine && offset.squaredNorm() <= maximumSquaredDistance)
+    {
+      this->Cosines[this->Count] = cosine;
+      this->Offsets[this->Count] = offset;
+      this->Ids[this->Count++] = w;
+    }
+  }
+}
+
+void Neighborhood::CollectRings(int v, int rings)
+{
+  this->Start(v);
+  int begin = 1;
+  for (int ring = 1; ring < rings || (ring < MaximumRings && this->Count <= MinimumPoints); ++ring)
+  {
+    const int end = this->Count;
+    for (; begin < end; ++begin)
+    {
+      this->AddFan(this->Ids[begin], ring == 1 ? SecondRingCosine : FarCosine, AnyDistance);
+    }
+  }
+}
+
+void Neighborhood::CollectBall(int v)
+{
+  this->CollectRings(v, 2);
+  double radius = 0.0;
+  for (int i = 1; i < this->CountWithOneRing; ++i)
+  {
+    radius = std::max(radius, this->Offsets[i].squaredNorm());
+  }
+  // Equal distances, as in a regular grid, must not be told apart by rounding.
+  radius *= 1.0001;
+  for (int i = 1; i < this->Count; ++i)
+  {
+    if (this->Offsets[i].squaredNorm() <= radius)
+    {
+      this->AddFan(this->Ids[i], FarCosine, radius);
+    }
+  }
+}
+
+void Neighborhood::CollectNearest(int v)
+{
+  this->Start(v);
+  for (int i = 1; i < this->CountWithOneRing; ++i)
+  {
+    this->AddFan(this->Ids[i], FarCosine, AnyDistance);
+  }
+}
+
+double Determination(const Neighborhood& neighborhood, const Eigen::Vector3d& normal)
+{
+  PlaneAxes axes;
+  if (!axes.Fit(neighborhood, normal))
+  {
+    return 0.0;
+  }
+  using Vector5 = Eigen::Matrix<double, 5, 1>;
+  using Matrix5 = Eigen::Matrix<double, 5, 5>;
+  Matrix5 matrix = Matrix5::Zero();
+  for (int i = 0; i < neighborhood.Size(); ++i)
+  {
+    if (neighborhood.IsClose(i))
+    {
+      // Without chord lengths, which bend straight rows.
+      const double x = neighborhood.Offset(i).dot(axes.A) / axes.UnitA;
+      const double y = neighborhood.Offset(i).dot(axes.B) / axes.UnitB;
+      Vector5 monomials;
+      monomials << x, y, 0.5 * x * x, x * y, 0.5 * y * y;
+      matrix.selfadjointView<Eigen::Lower>().rankUpdate(monomials);
+    }
+  }
+  matrix.diagonal().array() += TinyRidge * neighborhood.Size();
+  // The squares of the factor's diagonal are what earlier columns leave over.
+  const Eigen::LLT<Matrix5> factor(matrix);
+  const Eigen::Array3d left = factor.matrixLLT().diagonal().tail<3>().array().square();
+  const double smallest = (left / matrix.diagonal().tail<3>().array()).minCoeff();
+  return factor.info() == Eigen::Success ? smallest : 0.0;
+}
+
+bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
+  const SecondForm* earlier, SecondForm& form)
+{
+  PlaneAxes axes;
+  if (!axes.Fit(neighborhood, normal))
+  {
+    return false;
+  }
+  Matrix9 matrix = Matrix9::Zero();
+  Vector9 rightHandSide = Vector9::Zero();
+  for (int i = 0; i < neighborhood.Size(); ++i)
+  {
+    const Vector9 monomials = Monomials(neighborhood.Offset(i), axes, earlier);
+    matrix.selfadjointView<Eigen::Lower>().rankUpdate(monomials);
+    rightHandSide += neighborhood.Offset(i).dot(normal) * monomials;
+  }
+  // The Frobenius norms of the derivative tensors, in which a mixed derivative
+  // occurs several times: they do not depend on the choice of axes.
+  Vector9 ridge;
+  ridge << TinyRidge, TinyRidge, TinyRidge, 2.0 * TinyRidge, TinyRidge, CubicRidge,
+    3.0 * CubicRidge, 3.0 * CubicRidge, CubicRidge;
+  matrix.diagonal() += neighborhood.Size() * ridge;
+  return axes.ToSecondForm(matrix.llt().solve(rightHandSide), form);
+}
+
+bool FitNormalCurvatures(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
+  const SecondForm* earlier, SecondForm& form)
+{
+  PlaneAxes axes;
+  if (!axes.Fit(neighborhood, normal))
+  {
+    return false;
+  }
+  // The rows are already free of lengths; one unit for both axes keeps them so.
+  axes.UnitA = axes.UnitB = std::sqrt(axes.UnitA * axes.UnitB);
+  const double added = NearQuarterSquared(neighborhood);
+  Matrix9 matrix = Matrix9::Zero();
+  Vector9 rightHandSide = Vector9::Zero();
+  for (int i = 0; i < neighborhood.Size(); ++i)
+  {
+    // A point in almost the same place would decide alone, with the noise of its
+    // coordinates: the distance to the nearest quarter is added to all distances.
+    const Eigen::Vector3d& offset = neighborhood.Offset(i);
+    const double weight = axes.UnitA * axes.UnitA / (offset.squaredNorm() + added);
+    const Vector9 monomials = weight * Monomials(offset, axes, earlier);
+    matrix.selfadjointView<Eigen::Lower>().rankUpdate(monomials);
+    rightHandSide += weight * offset.dot(normal) * monomials;
+  }
+  // As in FitCubic the norms do not depend on the axes.
+  const Vector9 squares = matrix.diagonal();
+  const double slope = SlopeShare * (squares[0] + squares[1]);
+  const double curvature = CurvatureShare * (squares[2] + squares[3] / 2.0 + squares[4]);
+  const double cubic = CubicShare * (squares[5] + squares[6] / 3.0 + squares[7] / 3.0 + squares[8]);
+  Vector9 ridge;
+  ridge << slope, slope, curvature, 2.0 * curvature, curvature, cubic, 3.0 * cubic, 3.0 * cubic,
+    cubic;
+  matrix.diagonal() += ridge;
+  matrix.diagonal().array() += 0.01 * curvature;
+  return axes.ToSecondForm(matrix.llt().solve(rightHandSide), form);
+}
+}

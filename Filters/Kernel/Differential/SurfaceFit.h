@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Mesh/TriangleMesh.h"
+
+#include <array>
+
+namespace cartan
+{
+/// The second fundamental form in an orthonormal frame (U, V, Normal), in 1 /
+/// length, with the sign that makes an outward-oriented sphere positive.
+struct SecondForm
+{
+  Eigen::Vector3d Normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d U = Eigen::Vector3d::Zero();
+  Eigen::Vector3d V = Eigen::Vector3d::Zero();
+  double Uu = 0.0;
+  double Uv = 0.0;
+  double Vv = 0.0;
+
+  /// What to add to the tangential part of an offset from the vertex so that a
+  /// circle of curvature gets the length of its chord: along the direction in
+  /// which the normal turns on the way, a length tangential part t and a height
+  /// h become (t^2 + h^2)^1/2. In coordinates corrected so, cylinders as well
+  /// as spheres are exactly quadratic.
+  Eigen::Vector3d ChordCorrection(const Eigen::Vector3d& offset) const;
+};
+
+/// The points a surface is fitted to around one vertex. Reused from vertex to
+/// vertex, so that nothing is allocated in the loop.
+class Neighborhood
+{
+public:
+  /// A cubic has nine coefficients without its constant one; a few points more
+  /// than that let the fit average.
+  static constexpr int MinimumPoints = 12;
+
+  /// Bounds the work at vertices with many neighbors and on very anisotropic
+  /// triangles. Twice as many have not made any error of our tests smaller.
+  static constexpr int MaximumPoints = 64;
+
+  /// Neighborhoods of too few points, or of points that leave the form open,
+  /// grow at most this far.
+  static constexpr int MaximumRings = 5;
+
+  /// The normals are those of VertexNormals().
+  Neighborhood(const TriangleMesh& mesh, const Points& points, const Points& normals)
+    : Mesh(mesh)
+    , Positions(points)
+    , Normals(normals)
+  {
+  }
+
+  /// As many rings around v as asked for, more where these are too few points
+  /// (at borders).
+  void CollectRings(int v, int rings);
+
+  /// The two-ring, and what is connected with v inside the ball through its
+  /// farthest neighbor. The ball makes up for long thin triangles, whose
+  /// two-ring is just as long and thin and says little about bending the other
+  /// way.
+  void CollectBall(int v);
+
+  /// The one-ring, and of the second ring what faces the same way.
+  void CollectNearest(int v);
+
+  /// Without the vertex itself.
+  int Size() const { return this->Count - 1; }
+
+  /// From the vertex to its i-th point.
+  const Eigen::Vector3d& Offset(int i) const { return this->Offsets[i + 1]; }
+
+  /// Whether the i-th point is a neighbor or its normal has turned by less than
+  /// 37 degrees.
+  bool IsClose(int i) const;
+
+private:
+  void Start(int v);
+  void AddFan(int v, double minimumCosine, double maximumSquaredDistance);
+
+  const TriangleMesh& Mesh;
+  const Points& Positions;
+  const Points& Normals;
+  std::array<int, MaximumPoints + 1> Ids;
+  std::array<Eigen::Vector3d, MaximumPoints + 1> Offsets;
+  std::array<double, MaximumPoints + 1> Cosines; // of the turn of the normal
+  int Count = 0;
+  int CountWithOneRing = 0;
+};
+
+/// How far the close points of a neighborhood determine a quadric: of each of
+/// the quadratic monomials x^2, x y, y^2 the part of its sum of squares that the
+/// linear and the earlier ones leave over, the smallest of the three. 0 for two
+/// straight rows of points, where y^2 is a multiple of y; .03 and more where
+/// three rows are seen from the first; up to 1.
+double Determination(const Neighborhood& neighborhood, const Eigen::Vector3d& normal);
+
+/// From here on a quadric is taken as determined. Two rows of a cone, which
+/// are circles and therefore no straight rows, reach .008, three rows of quite
+/// different distances fall below .01.
+constexpr double LeastDetermination = 0.025;
+
+/// The least-squares cubic of FitCurvatures() in the plane normal to `normal`.
+/// The coordinates are corrected to chord lengths by `earlier` where it is
+/// given, and as on a sphere where it is not. False if the points coincide.
+bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
+  const SecondForm* earlier, SecondForm& form);
+
+/// The form of the normal curvatures 2 h / |p|^2 towards the points, for
+/// neighborhoods that do not determine a quadric: what is left open is decided
+/// by the normal, which is kept, and by a third derivative of zero. So edges
+/// between two rows are taken as straight if they are normal to it. As FitCubic
+/// otherwise.
+bool FitNormalCurvatures(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
+  const SecondForm* earlier, SecondForm& form);
+}
