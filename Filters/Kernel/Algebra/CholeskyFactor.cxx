@@ -47,17 +47,6 @@ void RequireFactor(FactorStatus status, Eigen::Index unknowns)
     system + "could not be solved: the solver's library failed. Choose another solver.");
 }
 
-void RequireIndexable(std::int64_t entries, const std::string& what)
-{
-  constexpr std::int64_t most = std::numeric_limits<int>::max();
-  if (entries > most)
-  {
-    throw Error(ErrorCode::TooLarge,
-      what + " has " + std::to_string(entries) + " entries, more than the " + std::to_string(most) +
-        " that its indices can count. Leave fewer points free, or decimate the surface.");
-  }
-}
-
 std::unique_ptr<CholeskyFactor> MakeCholeskyFactor(
   SolverBackend backend, const FactorLimits& limits)
 {

@@ -33,11 +33,6 @@ enum class FactorStatus
 /// SolverFailed.
 void RequireFactor(FactorStatus status, Eigen::Index unknowns);
 
-/// Throws Error(TooLarge) for a matrix of more entries than SparseMatrix can
-/// index, 2^31 - 1, before it is built. `what` begins the message: "The system
-/// of the frames".
-void RequireIndexable(std::int64_t entries, const std::string& what);
-
 /// Where a factorization stops being attempted, or changes its indices. The
 /// defaults are those of the machine; tests lower them.
 struct FactorLimits

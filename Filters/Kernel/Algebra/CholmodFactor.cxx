@@ -7,7 +7,7 @@
 #include <omp.h>
 #endif
 
-#include <algorithm>
+#include <type_traits>
 #include <vector>
 #endif
 
@@ -154,9 +154,13 @@ public:
       return this->Status();
     }
     this->Entries = static_cast<std::int64_t>(this->Common.lnz);
-    const std::int64_t most =
-      Api::Type == CHOLMOD_INT ? this->Limits.NarrowEntries : this->Limits.Entries;
-    return this->Entries > most ? FactorStatus::TooLarge : FactorStatus::Ok;
+    if (this->Entries > this->Limits.Entries)
+    {
+      return FactorStatus::OutOfMemory;
+    }
+    const bool isWide = Api::Type == CHOLMOD_LONG;
+    return !isWide && this->Entries > this->Limits.NarrowEntries ? FactorStatus::TooLarge
+                                                                 : FactorStatus::Ok;
   }
 
   FactorStatus Factorize(const SparseMatrix& lower) override

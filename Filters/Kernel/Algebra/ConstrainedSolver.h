@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Algebra/CholeskyFactor.h"
 #include "Base/ExecutionContext.h"
-#include "Base/Types.h"
 
 #include <memory>
 #include <vector>
 
 namespace cartan
 {
-enum class SolverBackend
-{
-  Automatic, ///< CHOLMOD when built with it, else Eigen
-  Eigen,     ///< Eigen's simplicial Cholesky factorization
-  Cholmod    ///< SuiteSparse CHOLMOD; Error(BadInput) when not built with it
-};
-
-bool HasCholmod();
-
 /// Solves A x = b for a sparse symmetric positive semidefinite A of which some
 /// unknowns are fixed and others softly held:
 ///
@@ -25,11 +16,12 @@ bool HasCholmod();
 ///
 /// with f the free and c the fixed unknowns, and s the soft stiffnesses, zero
 /// where nothing holds (their targets t go into b as s t). Factorize once, solve
-/// many right-hand sides. The only place that names a decomposition.
+/// many right-hand sides.
 class ConstrainedSolver
 {
 public:
-  explicit ConstrainedSolver(SolverBackend backend = SolverBackend::Automatic);
+  explicit ConstrainedSolver(
+    SolverBackend backend = SolverBackend::Automatic, const FactorLimits& limits = {});
   ~ConstrainedSolver();
   ConstrainedSolver(ConstrainedSolver&&) noexcept;
   ConstrainedSolver& operator=(ConstrainedSolver&&) noexcept;
@@ -42,7 +34,8 @@ public:
   /// Throws Error(SingularSystem) when free unknowns that are connected through
   /// non-zero entries reach neither a fixed unknown nor a stiffness. The message
   /// lists vertices: `vertices` names that of each unknown (#U, increasing among
-  /// the free ones; empty where they are the same).
+  /// the free ones; empty where they are the same). Throws what RequireFactor
+  /// throws when the factorization fails.
   void Factorize(const SparseMatrix& matrix, const std::vector<char>& isFixed,
     const Eigen::VectorXd& stiffness = {}, const std::vector<int>& vertices = {},
     const ExecutionContext& context = {});
@@ -50,13 +43,15 @@ public:
   /// The free unknowns in increasing order.
   const std::vector<int>& GetFree() const { return this->Free; }
 
-  /// x_f for the right-hand side b_f - A_fc x_c given whole: #free x k each.
-  /// Throws Error(SingularSystem) when the result is not finite.
-  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& rightHandSide) const;
+  /// x_f for the right-hand side b_f - A_fc x_c given whole: #free x k each. The
+  /// result lies in the solver's memory and is valid until the next solve.
+  /// Throws Error(SingularSystem) when it is not finite.
+  Eigen::Map<const Eigen::MatrixXd> SolveFree(
+    const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const;
 
   /// The convenient form: `rightHandSide` (b, #U x k) and `values` (#U x k), of
   /// which the fixed rows are read and the free rows are written.
-  void Solve(const Eigen::Ref<const Field>& rightHandSide, Field& values) const;
+  void Solve(const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const;
 
   /// How many numeric and symbolic factorizations there have been.
   int GetNumberOfFactorizations() const { return this->Factorizations; }
@@ -68,12 +63,11 @@ public:
   SolverBackend GetBackend() const { return this->Backend; }
 
 private:
-  class Factor;
-  class EigenFactor;
-  class CholmodFactor;
+  void NumberFree(const std::vector<char>& isFixed);
+  SparseMatrix SplitBlocks(const SparseMatrix& matrix, const Eigen::VectorXd& stiffness);
 
   SolverBackend Backend;
-  std::unique_ptr<Factor> Factors;
+  std::unique_ptr<CholeskyFactor> Factor;
   std::vector<int> Free;
   std::vector<int> FreeIndex; // #U, -1 where fixed
   SparseMatrix FreeBlock;     // lower triangle of A_ff + diag s_f

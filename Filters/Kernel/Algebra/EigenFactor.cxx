@@ -5,8 +5,6 @@
 
 #include <Eigen/SparseCholesky>
 
-#include <new>
-
 namespace cartan
 {
 namespace
@@ -108,20 +106,6 @@ public:
   }
 };
 
-/// Calls what may run out of memory.
-template <typename Action>
-FactorStatus Guarded(const Action& action)
-{
-  try
-  {
-    return action();
-  }
-  catch (const std::bad_alloc&)
-  {
-    return FactorStatus::OutOfMemory;
-  }
-}
-
 class EigenFactor : public CholeskyFactor
 {
 public:
@@ -134,41 +118,32 @@ public:
   {
     this->Wide.reset();
     this->Narrow = std::make_unique<Llt<int>>();
-    return Guarded(
-      [&]()
-      {
-        this->Narrow->analyzePattern(lower);
-        this->Entries = this->Narrow->NumberOfEntries();
-        if (this->Entries > this->Limits.Entries)
-        {
-          return FactorStatus::OutOfMemory;
-        }
-        if (this->Entries > this->Limits.NarrowEntries)
-        {
-          this->Narrow.reset();
-          this->Wide = std::make_unique<Llt<std::int64_t>>();
-          this->Wide->analyzePattern(WideMatrix(lower));
-        }
-        return FactorStatus::Ok;
-      });
+    this->Narrow->analyzePattern(lower);
+    this->Entries = this->Narrow->NumberOfEntries();
+    if (this->Entries > this->Limits.Entries)
+    {
+      return FactorStatus::OutOfMemory;
+    }
+    if (this->Entries > this->Limits.NarrowEntries)
+    {
+      this->Narrow.reset();
+      this->Wide = std::make_unique<Llt<std::int64_t>>();
+      this->Wide->analyzePattern(WideMatrix(lower));
+    }
+    return FactorStatus::Ok;
   }
 
   FactorStatus Factorize(const SparseMatrix& lower) override
   {
-    return Guarded(
-      [&]() { return this->Wide ? this->Wide->Factorize(lower) : this->Narrow->Factorize(lower); });
+    return this->Wide ? this->Wide->Factorize(lower) : this->Narrow->Factorize(lower);
   }
 
   FactorStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) override
   {
-    return Guarded(
-      [&]()
-      {
-        this->Solution.resize(rightHandSide.rows(), rightHandSide.cols());
-        this->Wide ? this->Wide->SolveAll(rightHandSide, this->Solution)
-                   : this->Narrow->SolveAll(rightHandSide, this->Solution);
-        return FactorStatus::Ok;
-      });
+    this->Solution.resize(rightHandSide.rows(), rightHandSide.cols());
+    this->Wide ? this->Wide->SolveAll(rightHandSide, this->Solution)
+               : this->Narrow->SolveAll(rightHandSide, this->Solution);
+    return FactorStatus::Ok;
   }
 
   Eigen::Map<const Eigen::MatrixXd> GetSolution() const override

@@ -66,6 +66,51 @@ std::vector<char> HeldVertices(
   }
   return isHeld;
 }
+
+/// The rows of the unknowns in the system over all locals, and by symmetry the
+/// columns of held ones.
+SparseMatrix SystemMatrix(const HandleLaplacian& laplacian)
+{
+  const int numberOfUnknowns = laplacian.NumberOfUnknowns();
+  const int size = laplacian.NumberOfLocals();
+  SparseMatrix matrix(size, size);
+  // A vertex has six neighbors in the mean.
+  matrix.reserve(7 * static_cast<Eigen::Index>(size));
+  std::vector<std::vector<std::pair<int, double>>> heldColumns(size - numberOfUnknowns);
+  std::vector<std::pair<int, double>> column;
+  for (int i = 0; i < numberOfUnknowns; ++i)
+  {
+    column.clear();
+    double sum = 0.0;
+    for (const auto* edge = laplacian.EdgesBegin(i); edge != laplacian.EdgesEnd(i); ++edge)
+    {
+      column.emplace_back(edge->Neighbor, -edge->Weight);
+      sum += edge->Weight;
+      if (edge->Neighbor >= numberOfUnknowns)
+      {
+        heldColumns[edge->Neighbor - numberOfUnknowns].emplace_back(i, -edge->Weight);
+      }
+    }
+    column.emplace_back(i, sum);
+    std::sort(column.begin(), column.end());
+    matrix.startVec(i);
+    for (const auto& [row, value] : column)
+    {
+      matrix.insertBack(row, i) = value;
+    }
+  }
+  for (std::size_t held = 0; held < heldColumns.size(); ++held)
+  {
+    const int c = numberOfUnknowns + static_cast<int>(held);
+    matrix.startVec(c);
+    for (const auto& [row, value] : heldColumns[held])
+    {
+      matrix.insertBack(row, c) = value;
+    }
+  }
+  matrix.finalize();
+  return matrix;
+}
 }
 
 std::vector<int> MovingHandleOfVertices(const HandleProblem& problem)
@@ -191,50 +236,13 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
   }
   context.Report(0.1);
 
-  // The system over all locals, with the held ones fixed.
-  SparseMatrix matrix(this->NumberOfLocals(), this->NumberOfLocals());
-  matrix.reserve(this->Edges.size() + this->NumberOfLocals());
-  std::vector<std::vector<std::pair<int, double>>> heldColumns(
-    this->NumberOfLocals() - this->UnknownCount);
-  std::vector<std::pair<int, double>> column;
-  for (int i = 0; i < this->UnknownCount; ++i)
-  {
-    column.clear();
-    double sum = 0.0;
-    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
-    {
-      column.emplace_back(edge->Neighbor, -edge->Weight);
-      sum += edge->Weight;
-      if (edge->Neighbor >= this->UnknownCount)
-      {
-        heldColumns[edge->Neighbor - this->UnknownCount].emplace_back(i, -edge->Weight);
-      }
-    }
-    column.emplace_back(i, sum);
-    std::sort(column.begin(), column.end());
-    matrix.startVec(i);
-    for (const auto& [row, value] : column)
-    {
-      matrix.insertBack(row, i) = value;
-    }
-  }
-  for (std::size_t held = 0; held < heldColumns.size(); ++held)
-  {
-    const int c = this->UnknownCount + static_cast<int>(held);
-    matrix.startVec(c);
-    for (const auto& [row, value] : heldColumns[held])
-    {
-      matrix.insertBack(row, c) = value;
-    }
-  }
-  matrix.finalize();
-
   std::vector<char> isFixed(this->NumberOfLocals(), 0);
   std::fill(isFixed.begin() + this->UnknownCount, isFixed.end(), 1);
   Eigen::VectorXd stiffness = 0.5 *
     Eigen::Map<const Eigen::VectorXd>(
       this->SquaredSoftWeights.data(), static_cast<Eigen::Index>(this->SquaredSoftWeights.size()));
-  this->Solver.Factorize(matrix, isFixed, stiffness, this->Vertices, context.Part(0.1, 1.0));
+  this->Solver.Factorize(
+    SystemMatrix(*this), isFixed, stiffness, this->Vertices, context.Part(0.1, 1.0));
 }
 
 std::vector<HandleLaplacian::Triangle> HandleLaplacian::Triangles(

@@ -100,8 +100,10 @@ public:
   Field HarmonicFields() const;
 
   /// Solves L x = b: `rightHandSide` has a row per unknown and already contains
-  /// what held neighbors and soft targets add. Returns #unknowns x k.
-  Eigen::MatrixXd Solve(const Eigen::MatrixXd& rightHandSide) const
+  /// what held neighbors and soft targets add. Returns #unknowns x k, valid until
+  /// the next solve.
+  Eigen::Map<const Eigen::MatrixXd> Solve(
+    const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const
   {
     return this->Solver.SolveFree(rightHandSide);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/FrameReconstruction.h"
 
+#include "Algebra/SparseProduct.h"
 #include "Differential/Laplacian.h"
 
 #include <algorithm>
@@ -31,8 +32,11 @@ SparseMatrix FrameMatrix(
   const TriangleMesh& mesh, const Transitions& transitions, const Eigen::VectorXd& weights)
 {
   const int numberOfVertices = mesh.NumberOfVertices();
+  const std::int64_t blocksInAll =
+    static_cast<std::int64_t>(mesh.NumberOfDirectedEdges()) + numberOfVertices;
+  RequireIndexable(9 * blocksInAll, "The system of the frames");
   SparseMatrix matrix(3 * numberOfVertices, 3 * numberOfVertices);
-  matrix.reserve(9 * (mesh.NumberOfDirectedEdges() + numberOfVertices));
+  matrix.reserve(9 * blocksInAll);
   std::vector<std::pair<int, Eigen::Matrix3d>> blocks; // of one block column
   for (int j = 0; j < numberOfVertices; ++j)
   {
@@ -156,9 +160,10 @@ Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transition
   {
     if (++step > maximumSteps)
     {
-      throw Error(ErrorCode::SingularSystem,
+      throw Error(ErrorCode::NotConverged,
         "The frames of the interpolated surface were not found after " +
-          std::to_string(maximumSteps) + " steps of conjugate gradients: use another solver.");
+          std::to_string(maximumSteps) +
+          " steps of conjugate gradients: choose Direct or RotationAveraging as FrameSolver.");
     }
     Columns image = matrix * direction;
     clearGiven(image);

@@ -32,7 +32,7 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
 /// needed. `laplacian` is factorized with the vertices of `isFixed` and the
 /// unused ones fixed; the frames there are kept. Stops when the preconditioned
 /// residual is 1e-10 of that of the start. `steps`, if given, receives the
-/// number of steps; throws Error(SingularSystem) after 1000.
+/// number of steps; throws Error(NotConverged) after 1000.
 Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices start, const ConstrainedSolver& laplacian,
   int* steps = nullptr, const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {});

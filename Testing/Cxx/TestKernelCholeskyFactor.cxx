@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Algebra/CholeskyFactor.h"
+#include "Kernel/Algebra/ConstrainedSolver.h"
+#include "Kernel/Algebra/SparseProduct.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include <set>
+#include <vector>
+
+namespace
+{
+using cartan::CholeskyFactor;
+using cartan::Error;
+using cartan::ErrorCode;
+using cartan::FactorLimits;
+using cartan::FactorStatus;
+using cartan::SolverBackend;
+using cartan::SparseMatrix;
+
+/// The Laplacian of a grid of count x count nodes, `shift` added to its diagonal,
+/// whole or its lower triangle.
+SparseMatrix Grid(int count, double shift, bool isWhole = false)
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto connect = [&](int i, int j)
+  {
+    entries.emplace_back(i, i, 1.0);
+    entries.emplace_back(j, j, 1.0);
+    entries.emplace_back(std::max(i, j), std::min(i, j), -1.0);
+    if (isWhole)
+    {
+      entries.emplace_back(std::min(i, j), std::max(i, j), -1.0);
+    }
+  };
+  for (int y = 0; y < count; ++y)
+  {
+    for (int x = 0; x < count; ++x)
+    {
+      const int i = y * count + x;
+      entries.emplace_back(i, i, shift);
+      if (x + 1 < count)
+      {
+        connect(i, i + 1);
+      }
+      if (y + 1 < count)
+      {
+        connect(i, i + count);
+      }
+    }
+  }
+  SparseMatrix matrix(count * count, count * count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+std::vector<SolverBackend> Backends()
+{
+  std::vector<SolverBackend> backends{ SolverBackend::Eigen };
+  if (cartan::HasCholmod())
+  {
+    backends.push_back(SolverBackend::Cholmod);
+  }
+  return backends;
+}
+
+TEST(CholeskyFactor, SolvesWithNarrowAndWideIndicesForAnyNumberOfColumns)
+{
+  const SparseMatrix lower = Grid(12, 0.1);
+  const Eigen::MatrixXd dense = Grid(12, 0.1, true);
+  for (const SolverBackend backend : Backends())
+  {
+    for (const bool isWide : { false, true })
+    {
+      FactorLimits limits;
+      limits.NarrowEntries = isWide ? 10 : limits.NarrowEntries;
+      const auto factor = cartan::MakeCholeskyFactor(backend, limits);
+      ASSERT_EQ(factor->Analyze(lower), FactorStatus::Ok);
+      ASSERT_EQ(factor->Factorize(lower), FactorStatus::Ok);
+      EXPECT_GE(factor->GetNumberOfEntries(), lower.nonZeros());
+      EXPECT_GE(factor->GetBytes(), 12 * static_cast<std::size_t>(factor->GetNumberOfEntries()));
+      for (int columns = 1; columns <= 9; ++columns)
+      {
+        const Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Random(lower.rows(), columns);
+        ASSERT_EQ(factor->Solve(rightHandSide), FactorStatus::Ok);
+        EXPECT_LT((dense * factor->GetSolution() - rightHandSide).cwiseAbs().maxCoeff(), 1e-12);
+      }
+      // Some columns of a larger matrix, whose columns lie farther apart.
+      const Eigen::MatrixXd larger = Eigen::MatrixXd::Random(lower.rows() + 3, 4);
+      ASSERT_EQ(factor->Solve(larger.topRows(lower.rows())), FactorStatus::Ok);
+      EXPECT_LT((dense * factor->GetSolution() - larger.topRows(lower.rows())).norm(), 1e-12);
+    }
+  }
+}
+
+TEST(CholeskyFactor, WideFactorsTakeMoreMemoryForTheSameSolution)
+{
+  const SparseMatrix lower = Grid(30, 0.1);
+  const Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Random(lower.rows(), 3);
+  for (const SolverBackend backend : Backends())
+  {
+    FactorLimits limits;
+    const auto narrow = cartan::MakeCholeskyFactor(backend, limits);
+    limits.NarrowEntries = 1;
+    const auto wide = cartan::MakeCholeskyFactor(backend, limits);
+    for (CholeskyFactor* factor : { narrow.get(), wide.get() })
+    {
+      ASSERT_EQ(factor->Analyze(lower), FactorStatus::Ok);
+      ASSERT_EQ(factor->Factorize(lower), FactorStatus::Ok);
+      ASSERT_EQ(factor->Solve(rightHandSide), FactorStatus::Ok);
+    }
+    EXPECT_GT(wide->GetBytes(), narrow->GetBytes());
+    EXPECT_EQ(wide->GetNumberOfEntries(), narrow->GetNumberOfEntries());
+    EXPECT_LT((wide->GetSolution() - narrow->GetSolution()).norm(), 1e-12);
+  }
+}
+
+TEST(CholeskyFactor, TellsWhatWentWrong)
+{
+  for (const SolverBackend backend : Backends())
+  {
+    const SparseMatrix indefinite = Grid(12, -0.5);
+    const auto factor = cartan::MakeCholeskyFactor(backend);
+    ASSERT_EQ(factor->Analyze(indefinite), FactorStatus::Ok);
+    EXPECT_EQ(factor->Factorize(indefinite), FactorStatus::NotPositiveDefinite);
+    // And goes on with a better one of the same pattern.
+    EXPECT_EQ(factor->Factorize(Grid(12, 0.5)), FactorStatus::Ok);
+
+    for (const bool isWide : { false, true })
+    {
+      FactorLimits limits;
+      limits.NarrowEntries = isWide ? 10 : limits.NarrowEntries;
+      limits.Entries = 200;
+      const auto limited = cartan::MakeCholeskyFactor(backend, limits);
+      EXPECT_EQ(limited->Analyze(Grid(12, 0.5)), FactorStatus::OutOfMemory);
+      EXPECT_EQ(limited->Analyze(Grid(4, 0.5)), FactorStatus::Ok);
+      EXPECT_EQ(limited->Factorize(Grid(4, 0.5)), FactorStatus::Ok);
+    }
+  }
+}
+
+TEST(CholeskyFactor, EachStatusHasAMessageOfItsOwn)
+{
+  EXPECT_NO_THROW(cartan::RequireFactor(FactorStatus::Ok, 7));
+  std::set<std::string> messages;
+  const std::vector<std::pair<FactorStatus, ErrorCode>> codes = {
+    { FactorStatus::NotPositiveDefinite, ErrorCode::SingularSystem },
+    { FactorStatus::TooLarge, ErrorCode::TooLarge },
+    { FactorStatus::OutOfMemory, ErrorCode::OutOfMemory },
+    { FactorStatus::Failed, ErrorCode::SolverFailed }
+  };
+  for (const auto& [status, code] : codes)
+  {
+    try
+    {
+      cartan::RequireFactor(status, 77);
+      FAIL() << "accepted";
+    }
+    catch (const Error& error)
+    {
+      EXPECT_EQ(error.GetCode(), code);
+      EXPECT_NE(std::string(error.what()).find("77 unknowns"), std::string::npos);
+      // Only the matrix's own fault is mended at the matrix.
+      EXPECT_EQ(std::string(error.what()).find("Repair") != std::string::npos,
+        status == FactorStatus::NotPositiveDefinite);
+      messages.insert(error.what());
+    }
+  }
+  EXPECT_EQ(messages.size(), codes.size());
+}
+
+TEST(CholeskyFactor, ASolverWithoutMemorySaysSoAndWorksAfterwards)
+{
+  for (const SolverBackend backend : Backends())
+  {
+    FactorLimits limits;
+    limits.Entries = 200;
+    cartan::ConstrainedSolver solver(backend, limits);
+    const std::vector<char> none(12 * 12, 0);
+    try
+    {
+      solver.Factorize(Grid(12, 0.0, true), none, Eigen::VectorXd::Ones(12 * 12));
+      FAIL() << "accepted";
+    }
+    catch (const Error& error)
+    {
+      EXPECT_EQ(error.GetCode(), ErrorCode::OutOfMemory);
+      EXPECT_NE(std::string(error.what()).find("memory"), std::string::npos);
+    }
+    const SparseMatrix small = Grid(4, 0.0, true);
+    solver.Factorize(small, std::vector<char>(16, 0), Eigen::VectorXd::Ones(16));
+    cartan::Field values = cartan::Field::Zero(16, 2);
+    solver.Solve(cartan::Field::Ones(16, 2), values);
+    EXPECT_LT((values.array() - 1.0).abs().maxCoeff(), 1e-12);
+  }
+}
+
+TEST(SparseProduct, CountsTheEntriesOfAProduct)
+{
+  const SparseMatrix matrix = Grid(9, 0.1, true);
+  const SparseMatrix product = matrix * matrix;
+  EXPECT_EQ(cartan::CountProductEntries(matrix, matrix), product.nonZeros());
+  EXPECT_EQ((cartan::CheckedProduct(matrix, matrix, "The system") - product).norm(), 0.0);
+}
+
+TEST(SparseProduct, RefusesMoreEntriesThanIndicesCount)
+{
+  EXPECT_NO_THROW(cartan::RequireIndexable(2147483647, "The system"));
+  try
+  {
+    cartan::RequireIndexable(2147483648, "The system of the frames");
+    FAIL() << "accepted";
+  }
+  catch (const Error& error)
+  {
+    EXPECT_EQ(error.GetCode(), ErrorCode::TooLarge);
+    EXPECT_NE(std::string(error.what()).find("The system of the frames has 2147483648 entries"),
+      std::string::npos);
+  }
+}
+}
