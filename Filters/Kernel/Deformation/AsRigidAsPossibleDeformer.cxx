@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/AsRigidAsPossibleDeformer.h"
 
+#include "Algebra/AndersonAcceleration.h"
 #include "Algebra/Rotation.h"
 #include "Deformation/RotationInvariantDeformer.h"
 #include "Deformation/ShapePreservingDeformer.h"
 #include "Mesh/Geometry.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -16,63 +15,7 @@ namespace cartan
 namespace
 {
 using Row = Eigen::RowVector3d;
-
-/// How many past steps the extrapolation sees. More gain little and cost two
-/// vectors of all coordinates each.
-constexpr int Memory = 5;
 }
-
-/// Anderson acceleration of the fixed-point iteration x <- g(x): with
-/// f = g(x) - x, the next x is g - dG t where t minimizes |f - dF t|, dF and dG
-/// the last differences of f and g.
-class AsRigidAsPossibleDeformer::Extrapolation
-{
-public:
-  void Forget() { this->Count = 0; }
-
-  /// Takes the step f = g - x from x; returns whether `next` is other than g.
-  bool Next(const Eigen::VectorXd& g, const Eigen::VectorXd& f, Eigen::VectorXd& next)
-  {
-    if (this->Count > 0)
-    {
-      const int column = (this->Count - 1) % Memory;
-      this->StepDifferences.col(column) = f - this->LastStep;
-      this->ValueDifferences.col(column) = g - this->LastValue;
-    }
-    else
-    {
-      this->StepDifferences.resize(f.size(), Memory);
-      this->ValueDifferences.resize(f.size(), Memory);
-    }
-    this->LastStep = f;
-    this->LastValue = g;
-    const int used = std::min(this->Count++, Memory);
-    next = g;
-    if (used == 0)
-    {
-      return false;
-    }
-    const auto steps = this->StepDifferences.leftCols(used);
-    Eigen::MatrixXd gram = steps.transpose() * steps;
-    // Differences become parallel near the end; this much keeps their factors
-    // small and changes nothing where they are independent.
-    gram.diagonal() *= 1.0 + 1e-12;
-    const Eigen::VectorXd factors = gram.ldlt().solve(steps.transpose() * f);
-    if (!factors.allFinite())
-    {
-      return false;
-    }
-    next.noalias() -= this->ValueDifferences.leftCols(used) * factors;
-    return true;
-  }
-
-private:
-  int Count = 0;
-  Eigen::MatrixXd StepDifferences;
-  Eigen::MatrixXd ValueDifferences;
-  Eigen::VectorXd LastStep;
-  Eigen::VectorXd LastValue;
-};
 
 AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, RigidityEnergy energy,
   InitialGuess guess, SolverBackend backend, const ExecutionContext& context)
@@ -500,7 +443,7 @@ void AsRigidAsPossibleDeformer::Deform(const HandleTargets& targets, bool wantTr
   this->Start(targets, result, context.Part(0.0, 0.1));
   const int numberOfUnknowns = this->System->NumberOfUnknowns();
   Eigen::Map<Eigen::VectorXd> unknowns(this->Current.data(), 3 * numberOfUnknowns);
-  Extrapolation extrapolation;
+  AndersonAcceleration extrapolation(1e-12);
   Eigen::MatrixXd rightHandSide(numberOfUnknowns, 3);
   Eigen::VectorXd step(3 * numberOfUnknowns);
   Eigen::VectorXd plain;
@@ -530,7 +473,7 @@ void AsRigidAsPossibleDeformer::Deform(const HandleTargets& targets, bool wantTr
     {
       rightHandSide.row(i) = this->Residual.row(this->Cells[i]);
     }
-    const Eigen::MatrixXd solution = this->System->Solve(rightHandSide);
+    const Eigen::Map<const Eigen::MatrixXd> solution = this->System->Solve(rightHandSide);
     for (int i = 0; i < numberOfUnknowns; ++i)
     {
       step.segment<3>(3 * this->Cells[i]) = solution.row(i);

@@ -127,7 +127,6 @@ private:
     double LeftWeight; ///< the left triangle's part of the spoke's weight
     double RimWeight;  ///< and of the edge from Neighbor to Left
   };
-  class Extrapolation;
 
   void BuildCells();
   void BuildRims();

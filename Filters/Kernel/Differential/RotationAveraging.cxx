@@ -1,71 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/RotationAveraging.h"
 
+#include "Algebra/AndersonAcceleration.h"
 #include "Algebra/Rotation.h"
-
-#include <Eigen/Cholesky>
-
-#include <deque>
 
 namespace cartan
 {
-namespace
-{
-/// Steps of a fixed-point iteration that look back (Anderson acceleration; Walker
-/// and Ni, Anderson Acceleration for Fixed-Point Iterations, 2011): of the steps
-/// that the last differences allow, the one whose own next step would be the
-/// smallest if all were linear.
-class Acceleration
-{
-public:
-  /// Replaces a plain step by a better one.
-  void Improve(Field& step)
-  {
-    const Field plain = step;
-    if (this->LastPlain.size())
-    {
-      this->Differences.push_back({ this->LastTaken, plain - this->LastPlain });
-      if (this->Differences.size() > Depth)
-      {
-        this->Differences.pop_front();
-      }
-      const auto count = static_cast<Eigen::Index>(this->Differences.size());
-      Eigen::MatrixXd products(count, count);
-      Eigen::VectorXd rightHandSide(count);
-      for (Eigen::Index a = 0; a < count; ++a)
-      {
-        rightHandSide[a] = this->Differences[a].OfStep.cwiseProduct(plain).sum();
-        for (Eigen::Index b = 0; b <= a; ++b)
-        {
-          products(a, b) = products(b, a) =
-            this->Differences[a].OfStep.cwiseProduct(this->Differences[b].OfStep).sum();
-        }
-      }
-      // Differences that hardly differ must not blow up.
-      products.diagonal() *= 1.0 + 1e-10;
-      const Eigen::VectorXd parts = products.ldlt().solve(rightHandSide);
-      for (Eigen::Index a = 0; a < count && parts.allFinite(); ++a)
-      {
-        step -= parts[a] * (this->Differences[a].Taken + this->Differences[a].OfStep);
-      }
-    }
-    this->LastPlain = plain;
-    this->LastTaken = step;
-  }
-
-private:
-  static constexpr std::size_t Depth = 5;
-  struct Difference
-  {
-    Field Taken;  // the step that was taken
-    Field OfStep; // by how much it changed the plain step
-  };
-  std::deque<Difference> Differences;
-  Field LastPlain;
-  Field LastTaken;
-};
-}
-
 RotationAveraging::RotationAveraging(
   int numberOfNodes, std::vector<Edge> edges, std::shared_ptr<const ConstrainedSolver> laplacian)
   : NodeCount(numberOfNodes)
@@ -80,11 +20,14 @@ RotationAveraging::Result RotationAveraging::Improve(
   constexpr double tolerance = 1e-8;
   // Turns add up like vectors, as the acceleration has it, while they are small.
   constexpr double small = 0.3;
-  Acceleration acceleration;
+  AndersonAcceleration acceleration(1e-10);
   const int numberOfEdges = static_cast<int>(this->Edges.size());
   Points residuals(numberOfEdges, 3);
   Field turns = Field::Zero(this->NodeCount, 3);
-  for (int step = 1;; ++step)
+  Eigen::Map<Eigen::VectorXd> step(turns.data(), turns.size());
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(turns.size()); // of all steps
+  Eigen::VectorXd next;
+  for (int steps = 1;; ++steps)
   {
     context.For(numberOfEdges,
       [&](int begin, int end)
@@ -111,8 +54,10 @@ RotationAveraging::Result RotationAveraging::Improve(
     const double largest = turns.rowwise().norm().maxCoeff();
     if (largest < small)
     {
-      acceleration.Improve(turns);
+      acceleration.Next(sum + step, step, next);
+      step = next - sum;
     }
+    sum += step;
     context.For(this->NodeCount,
       [&](int begin, int end)
       {
@@ -122,11 +67,11 @@ RotationAveraging::Result RotationAveraging::Improve(
           MatrixAt(frames, v) = (RotationFromVector(turn) * MatrixAt(frames, v)).eval();
         }
       });
-    if (step == MaximumSteps || !(largest > tolerance))
+    if (steps == MaximumSteps || !(largest > tolerance))
     {
-      return { step, largest };
+      return { steps, largest };
     }
-    context.Report(static_cast<double>(step) / MaximumSteps);
+    context.Report(static_cast<double>(steps) / MaximumSteps);
   }
 }
 }
