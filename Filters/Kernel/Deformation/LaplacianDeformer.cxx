@@ -2,6 +2,7 @@
 #include "Deformation/LaplacianDeformer.h"
 
 #include "Algebra/Rotation.h"
+#include "Algebra/SparseProduct.h"
 
 #include <Eigen/QR>
 
@@ -46,59 +47,65 @@ Eigen::Matrix<double, 3, 4> SimilarityOf(const Eigen::Vector3d& d)
 
 LaplacianDeformer::LaplacianDeformer(HandleProblem problem, LaplacianRotations rotations,
   SolverBackend backend, const ExecutionContext& context)
-  : SurfaceDeformer(std::move(problem))
+  : SurfaceDeformer(RequirePositions(std::move(problem), "Laplacian editing"))
   , Rotations(rotations)
-  , System(this->Problem, 2, backend, context.Part(0.0, 0.5))
-  , Differential(this->System.DifferentialCoordinates(*this->Problem.Rest))
-  , ImplicitSolver(backend)
+  , System(this->Problem, 2, backend,
+      context.Part(0.0, rotations == LaplacianRotations::Implicit ? 0.5 : 0.9))
+  , ImplicitSystem(backend)
+  , MovingHandles(MovingHandleOfVertices(this->Problem))
 {
-  RequirePositions(this->Problem, "Laplacian editing");
-  this->FindRows();
-  if (rotations == LaplacianRotations::Estimated)
-  {
-    for (const int v : this->Rows)
-    {
-      this->TwoRings.push_back(ClosedTwoRing(*this->Problem.Mesh, v));
-    }
-  }
-  else if (rotations == LaplacianRotations::Implicit)
+  // M^-1 L p, whose rows up to the unknowns' neighbors are complete.
+  const Points integrated = this->System.GetLaplacian() * this->System.Gather(*this->Problem.Rest);
+  this->Differential =
+    (this->System.GetInverseMass().asDiagonal() * integrated).topRows(this->NumberOfRows());
+  this->Transforms = Identities(this->NumberOfRows());
+  this->FindRings();
+  if (rotations == LaplacianRotations::Implicit)
   {
     this->PrepareImplicit(context.Part(0.5, 1.0));
   }
   context.Report(1.0);
 }
 
-void LaplacianDeformer::FindRows()
+void LaplacianDeformer::FindRings()
 {
   const TriangleMesh& mesh = *this->Problem.Mesh;
-  std::vector<char> isRow(mesh.NumberOfVertices(), 0);
-  for (const int v : this->System.GetUnknowns())
+  const std::vector<int>& vertices = this->System.GetVertices();
+  if (this->Rotations == LaplacianRotations::Estimated)
   {
-    for (const int w : ClosedRing(mesh, v))
+    for (int row = 0; row < this->NumberOfRows(); ++row)
     {
-      isRow[w] = 1;
+      this->TwoRings.push_back(ClosedTwoRing(mesh, vertices[row]));
     }
   }
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  if (this->Rotations == LaplacianRotations::Implicit)
   {
-    if (isRow[v])
+    std::vector<int> local(mesh.NumberOfVertices(), -1);
+    for (int i = 0; i < this->System.NumberOfLocals(); ++i)
     {
-      this->Rows.push_back(v);
+      local[vertices[i]] = i;
+    }
+    for (int row = 0; row < this->NumberOfRows(); ++row)
+    {
+      this->Rings.push_back(ClosedRing(mesh, vertices[row]));
+      for (int& vertex : this->Rings.back())
+      {
+        vertex = local[vertex];
+      }
     }
   }
 }
 
-void LaplacianDeformer::PrepareImplicit(const ExecutionContext& context)
+/// Three equations for each row, (L y)_v - (s I + [h]x) (L x)_v in the weight of
+/// M^-1/2, over three unknowns for each local vertex; keeps the fits of (s, h).
+SparseMatrix LaplacianDeformer::ImplicitEquations()
 {
-  const TriangleMesh& mesh = *this->Problem.Mesh;
-  const Points& rest = *this->Problem.Rest;
+  const Points rest = this->System.Gather(*this->Problem.Rest);
   const SparseMatrix& laplacian = this->System.GetLaplacian();
-  const int numberOfUnknowns = 3 * mesh.NumberOfVertices();
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t row = 0; row < this->Rows.size(); ++row)
+  for (int row = 0; row < this->NumberOfRows(); ++row)
   {
-    const int v = this->Rows[row];
-    const std::vector<int> ring = ClosedRing(mesh, v);
+    const std::vector<int>& ring = this->Rings[row];
     // The best (s, h) and translation for given positions y of the ring:
     // (s I + [h]x) (x_j - mean x) = y_j - mean y. Centered on the mean, the
     // translation drops out.
@@ -115,52 +122,44 @@ void LaplacianDeformer::PrepareImplicit(const ExecutionContext& context)
     }
     // The columns of the design have mean zero, so the mean of y drops out too.
     Eigen::MatrixXd fit = design.completeOrthogonalDecomposition().pseudoInverse();
-    // Equation row: (L y)_v - (s I + [h]x) (L x)_v, in the weight of M^-1/2.
-    const double weight = std::sqrt(this->System.GetInverseMass()[v]);
+    const double weight = std::sqrt(this->System.GetInverseMass()[row]);
     // L is symmetric, and stored by columns.
-    const Eigen::Vector3d integrated = (laplacian.col(v).transpose() * rest).transpose();
+    const Eigen::Vector3d integrated = (laplacian.col(row).transpose() * rest).transpose();
     const Eigen::MatrixXd turned = SimilarityOf(integrated) * fit; // 3 x 3 k
-    const int firstEquation = 3 * static_cast<int>(row);
     for (std::size_t k = 0; k < ring.size(); ++k)
     {
-      const double l = laplacian.coeff(v, ring[k]);
+      const double l = laplacian.coeff(row, ring[k]);
       for (int r = 0; r < 3; ++r)
       {
         for (int c = 0; c < 3; ++c)
         {
           const double value = (r == c ? l : 0.0) - turned(r, 3 * static_cast<Eigen::Index>(k) + c);
-          entries.emplace_back(firstEquation + r, 3 * ring[k] + c, weight * value);
+          entries.emplace_back(3 * row + r, 3 * ring[k] + c, weight * value);
         }
       }
     }
     this->Fits.push_back(std::move(fit));
   }
-  SparseMatrix equations(3 * static_cast<Eigen::Index>(this->Rows.size()), numberOfUnknowns);
+  SparseMatrix equations(3 * this->NumberOfRows(), 3 * this->System.NumberOfLocals());
+  RequireIndexable(static_cast<std::int64_t>(entries.size()), "The system of implicit rotations");
   equations.setFromTriplets(entries.begin(), entries.end());
+  return equations;
+}
+
+void LaplacianDeformer::PrepareImplicit(const ExecutionContext& context)
+{
+  const SparseMatrix equations = this->ImplicitEquations();
   context.Report(0.3);
-  std::vector<char> isFixed(numberOfUnknowns, 1);
-  std::vector<int> vertices(numberOfUnknowns);
-  for (int unknown = 0; unknown < numberOfUnknowns; ++unknown)
-  {
-    vertices[unknown] = unknown / 3;
-  }
-  for (const int v : this->System.GetUnknowns())
-  {
-    std::fill_n(isFixed.begin() + 3 * v, 3, 0);
-  }
-  Eigen::VectorXd stiffness(numberOfUnknowns);
-  for (int unknown = 0; unknown < numberOfUnknowns; ++unknown)
-  {
-    stiffness[unknown] = this->System.GetStiffness()[unknown / 3];
-  }
-  const SparseMatrix normal = equations.transpose() * equations;
-  this->ImplicitSolver.Factorize(normal, isFixed, stiffness, vertices, context.Part(0.3, 1.0));
+  const SparseMatrix normal =
+    CheckedProduct(equations.transpose(), equations, "The system of implicit rotations");
+  this->ImplicitSystem.Factorize(
+    normal, this->System.GetAnchors().Repeated(3), context.Part(0.3, 1.0));
 }
 
 void LaplacianDeformer::EstimateRotations(const Points& current, const ExecutionContext& context)
 {
   const Points& rest = *this->Problem.Rest;
-  context.For(static_cast<int>(this->Rows.size()),
+  context.For(this->NumberOfRows(),
     [&](int begin, int end)
     {
       for (int row = begin; row < end; ++row)
@@ -180,27 +179,20 @@ void LaplacianDeformer::EstimateRotations(const Points& current, const Execution
         {
           covariance += (current.row(w).transpose() - mean) * (rest.row(w) - restMean.transpose());
         }
-        MatrixAt(this->Transforms, this->Rows[row]) = ProjectOnRotations(covariance);
+        MatrixAt(this->Transforms, row) = ProjectOnRotations(covariance);
       }
     });
 }
 
-void LaplacianDeformer::SolveImplicitly(Points& positions)
+void LaplacianDeformer::SolveImplicitly(const Points& positions)
 {
-  const Eigen::Index size = positions.rows();
-  Field unknowns(3 * size, 1);
-  Field rightHandSide(3 * size, 1);
-  for (Eigen::Index v = 0; v < size; ++v)
+  const Points locals = this->System.Gather(positions);
+  // Three unknowns side by side for each local vertex.
+  Field unknowns = Eigen::Map<const Field>(locals.data(), locals.size(), 1);
+  this->ImplicitSystem.Solve(Field::Zero(unknowns.rows(), 1), unknowns);
+  for (int row = 0; row < this->NumberOfRows(); ++row)
   {
-    unknowns.middleRows<3>(3 * v) = positions.row(v).transpose();
-    rightHandSide.middleRows<3>(3 * v) =
-      this->System.GetStiffness()[v] * positions.row(v).transpose();
-  }
-  this->ImplicitSolver.Solve(rightHandSide, unknowns);
-  for (std::size_t row = 0; row < this->Rows.size(); ++row)
-  {
-    const int v = this->Rows[row];
-    const std::vector<int> ring = ClosedRing(*this->Problem.Mesh, v);
+    const std::vector<int>& ring = this->Rings[row];
     Eigen::VectorXd ringPositions(3 * ring.size());
     for (std::size_t k = 0; k < ring.size(); ++k)
     {
@@ -212,46 +204,58 @@ void LaplacianDeformer::SolveImplicitly(Points& positions)
     Eigen::Matrix3d transform;
     transform << s, -similarity[3], similarity[2], similarity[3], s, -similarity[1], -similarity[2],
       similarity[1], s;
-    MatrixAt(this->Transforms, v) = ProjectOnRotations(transform);
+    MatrixAt(this->Transforms, row) = ProjectOnRotations(transform);
   }
 }
 
-void LaplacianDeformer::SolveRotated(const HandleTargets& targets, Points& positions) const
+/// L T d; `positions` (#V x 3) has the handles' places and gets the unknowns'.
+void LaplacianDeformer::SolveRotated(Points& positions) const
 {
-  Points rotated = this->Differential;
-  for (const int v : this->Rows)
+  Points rotated = Points::Zero(this->System.NumberOfLocals(), 3);
+  for (int row = 0; row < this->NumberOfRows(); ++row)
   {
-    const Eigen::Vector3d differential = this->Differential.row(v);
-    rotated.row(v) = (MatrixAt(this->Transforms, v) * differential).transpose();
+    const Eigen::Vector3d differential = this->Differential.row(row);
+    rotated.row(row) = (MatrixAt(this->Transforms, row) * differential).transpose();
   }
-  positions = this->System.Targets(targets);
   this->System.Solve(this->System.GetLaplacian() * rotated, positions);
 }
 
 void LaplacianDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
-  this->Transforms = Identities(this->Problem.Mesh->NumberOfVertices());
+  const int numberOfVertices = this->Problem.Mesh->NumberOfVertices();
+  this->Transforms = Identities(this->NumberOfRows());
+  result.FrameScale.setOnes(numberOfVertices);
+  result.Positions = HandlePositions(this->Problem, targets, this->MovingHandles);
+  // The targets of softly held vertices, which each solve overwrites.
+  const Points targetsOfLocals = this->System.Gather(result.Positions);
+  const auto solve = [&]()
+  {
+    for (int i = 0; i < this->System.NumberOfUnknowns(); ++i)
+    {
+      result.Positions.row(this->System.GetVertices()[i]) = targetsOfLocals.row(i);
+    }
+    this->SolveRotated(result.Positions);
+  };
   if (this->Rotations == LaplacianRotations::Implicit)
   {
-    result.Positions = this->System.Targets(targets);
     this->SolveImplicitly(result.Positions);
-    this->SolveRotated(targets, result.Positions);
   }
-  else
+  solve();
+  const int rounds = this->Rotations == LaplacianRotations::Estimated ? this->Rounds : 0;
+  for (int round = 0; round < rounds; ++round)
   {
-    this->SolveRotated(targets, result.Positions);
-    const int rounds = this->Rotations == LaplacianRotations::Estimated ? this->Rounds : 0;
-    for (int round = 0; round < rounds; ++round)
-    {
-      context.Report(static_cast<double>(round) / rounds);
-      this->EstimateRotations(result.Positions, context);
-      this->SolveRotated(targets, result.Positions);
-    }
+    context.Report(static_cast<double>(round) / rounds);
+    this->EstimateRotations(result.Positions, context);
+    solve();
   }
   if (wantTransforms)
   {
-    result.Transforms = this->Transforms;
+    result.Transforms = Identities(numberOfVertices);
+    for (int row = 0; row < this->NumberOfRows(); ++row)
+    {
+      result.Transforms.row(this->System.GetVertices()[row]) = this->Transforms.row(row);
+    }
   }
   context.Report(1.0);
 }

@@ -42,37 +42,41 @@ public:
   int GetNumberOfFactorizations() const override
   {
     return this->System.GetNumberOfFactorizations() +
-      this->ImplicitSolver.GetNumberOfFactorizations();
+      this->ImplicitSystem.GetNumberOfFactorizations();
   }
-  int GetNumberOfFreeVertices() const override
-  {
-    return static_cast<int>(this->System.GetUnknowns().size());
-  }
+  int GetNumberOfFreeVertices() const override { return this->System.NumberOfUnknowns(); }
   std::size_t GetBytes() const override
   {
-    return this->Problem.GetBytes() + this->System.GetBytes() + this->ImplicitSolver.GetBytes() +
-      TotalBytes(this->Differential, this->Rows, this->TwoRings, this->Transforms, this->Fits);
+    return this->Problem.GetBytes() + this->System.GetBytes() + this->ImplicitSystem.GetBytes() +
+      TotalBytes(this->MovingHandles, this->Differential, this->Rings, this->TwoRings,
+        this->Transforms, this->Fits);
   }
 
 private:
-  void FindRows();
+  /// The vertices whose differential coordinates the unknowns change: these and
+  /// their neighbors, which are the first locals of the system.
+  int NumberOfRows() const { return this->System.NumberWithin(1); }
+
+  void FindRings();
   void PrepareImplicit(const ExecutionContext& context);
+  SparseMatrix ImplicitEquations();
   void EstimateRotations(const Points& current, const ExecutionContext& context);
-  void SolveImplicitly(Points& positions);
-  void SolveRotated(const HandleTargets& targets, Points& positions) const;
+  void SolveImplicitly(const Points& positions);
+  void SolveRotated(Points& positions) const;
 
   LaplacianRotations Rotations;
   PolyharmonicSystem System;
+  AnchoredSystem ImplicitSystem;
   int Rounds = 5;
-  Points Differential; ///< #V x 3, of the rest
-  /// The vertices whose differential coordinates the unknowns change: these and
-  /// their neighbors.
-  std::vector<int> Rows;
-  std::vector<std::vector<int>> TwoRings; ///< of Rows, the vertex included
-  Matrices Transforms;                    ///< #V x 9
-  /// Implicit: (s, h) of each of Rows as a linear function of the positions of
-  /// its one-ring, 4 x 3 k, and the equations' matrix over 3 #V unknowns.
+  std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
+  Points Differential;            ///< #rows x 3, of the rest
+  Matrices Transforms;            ///< #rows x 9
+  /// Of each row: itself and its neighbors, by local number (Implicit); the
+  /// vertices within two edges, itself included (Estimated).
+  std::vector<std::vector<int>> Rings;
+  std::vector<std::vector<int>> TwoRings;
+  /// Implicit: (s, h) of each row as a linear function of the positions of its
+  /// ring, 4 x 3 k.
   std::vector<Eigen::MatrixXd> Fits;
-  ConstrainedSolver ImplicitSolver;
 };
 }

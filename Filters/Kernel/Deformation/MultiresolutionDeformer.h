@@ -24,17 +24,18 @@ public:
   {
     return this->System.GetNumberOfFactorizations();
   }
-  int GetNumberOfFreeVertices() const override
-  {
-    return static_cast<int>(this->System.GetUnknowns().size());
-  }
+  int GetNumberOfFreeVertices() const override { return this->System.NumberOfUnknowns(); }
   std::size_t GetBytes() const override
   {
-    return this->Problem.GetBytes() + this->System.GetBytes() + BytesOf(this->RestBase);
+    return this->Problem.GetBytes() + this->System.GetBytes() +
+      TotalBytes(this->MovingHandles, this->Zero, this->RestBase, this->Rotations);
   }
 
 private:
   PolyharmonicSystem System;
-  Points RestBase; ///< #V x 3
+  std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
+  Points Zero;                    ///< #locals x 3, the right-hand side
+  Points RestBase;                ///< #V x 3
+  Matrices Rotations;             ///< #unknowns x 9, of the base's local frames
 };
 }

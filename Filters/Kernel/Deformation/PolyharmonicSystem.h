@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Algebra/AnchoredSystem.h"
 #include "Deformation/HandleLaplacian.h"
 #include "Deformation/SurfaceDeformer.h"
 
 namespace cartan
 {
 /// The system K = L (M^-1 L)^(k-1) of order k on the free vertices that moving
-/// handles reach, over all vertices of the mesh, the held ones eliminated: the
-/// discrete Laplacian of smoothness k (Botsch and Kobbelt, An Intuitive Framework
-/// for Real-time Freeform Modeling, 2004). For k = 2 it is also the matrix of
+/// handles reach, the held ones eliminated: the discrete Laplacian of smoothness
+/// k (Botsch and Kobbelt, An Intuitive Framework for Real-time Freeform Modeling,
+/// 2004). For k = 2 it is also the matrix of
 ///
 ///   sum over all vertices of m_i |(M^-1 L x)_i - d_i|^2,
 ///
 /// the least-squares fit to differential coordinates d, whose right-hand side is
-/// L d. M are the mixed Voronoi areas over their mean, so that K has no unit;
-/// the identity with uniform weights.
+/// L d. L and M are those of LaplaceOperator.
+///
+/// Its *local* numbering has the unknown vertices first, then the held vertices
+/// one edge away from them, then those two edges away, up to k, which are all
+/// that the system sees. Other vertices are not in it and cost nothing.
 class PolyharmonicSystem
 {
 public:
@@ -23,41 +27,52 @@ public:
   PolyharmonicSystem(const HandleProblem& problem, int order, SolverBackend backend,
     const ExecutionContext& context);
 
-  const std::vector<int>& GetUnknowns() const { return this->Solver.GetFree(); }
+  /// How many locals are within so many edges of an unknown: 0 to the order.
+  int NumberWithin(int edges) const { return this->RingEnds[edges]; }
+  int NumberOfUnknowns() const { return this->NumberWithin(0); }
+  int NumberOfLocals() const { return static_cast<int>(this->Vertices.size()); }
+
+  /// The mesh's vertex of each local one.
+  const std::vector<int>& GetVertices() const { return this->Vertices; }
+
+  /// L between the locals. The rows of those nearer than k edges are complete.
   const SparseMatrix& GetLaplacian() const { return this->Laplacian; }
 
-  /// 1 / m, and the stiffness w^2 / 2 that holds softly: #V each.
+  /// 1 / m: #locals.
   const Eigen::VectorXd& GetInverseMass() const { return this->InverseMass; }
-  const Eigen::VectorXd& GetStiffness() const { return this->Stiffness; }
 
-  /// M^-1 L x: #V x 3.
-  Points DifferentialCoordinates(const Points& points) const;
+  /// What holds the locals: the unknowns softly with w^2 / 2, all others hard.
+  const Anchors& GetAnchors() const { return this->Held; }
 
-  /// Where handles are to go: the rest with the targets of all moving handles'
-  /// vertices: #V x 3.
-  Points Targets(const HandleTargets& targets) const;
+  /// The rows of the locals: #locals x 3 from #V x 3.
+  Points Gather(const Points& ofVertices) const;
 
-  /// Solves K x = b on the unknowns: `rightHandSide` is b, #V x 3; `values` has
-  /// the held vertices' positions, and the soft targets, and gets the unknowns'.
-  void Solve(const Points& rightHandSide, Points& values) const;
+  /// Solves K x = b: `rightHandSide` is b (#locals x 3, read at unknowns); `positions`
+  /// (#V x 3) has the places of held vertices and the targets of softly held
+  /// ones, and gets the unknowns'.
+  void Solve(const Points& rightHandSide, Points& positions) const;
 
-  int GetNumberOfFactorizations() const { return this->Solver.GetNumberOfFactorizations(); }
+  int GetNumberOfFactorizations() const { return this->System.GetNumberOfFactorizations(); }
 
   std::size_t GetBytes() const
   {
-    return this->Solver.GetBytes() + this->Problem.GetBytes() +
-      TotalBytes(this->MovingHandles, this->Laplacian, this->InverseMass, this->Stiffness);
+    return this->System.GetBytes() +
+      TotalBytes(this->Vertices, this->RingEnds, this->Laplacian, this->InverseMass,
+        this->Held.IsHard, this->Held.Stiffness, this->Held.Vertices);
   }
 
 private:
-  HandleProblem Problem;
-  std::vector<int> MovingHandles;
+  void NumberLocals(const TriangleMesh& mesh, const std::vector<char>& isUnknown, int order);
+
+  std::vector<int> Vertices;
+  std::vector<int> RingEnds;
   SparseMatrix Laplacian;
   Eigen::VectorXd InverseMass;
-  Eigen::VectorXd Stiffness;
-  ConstrainedSolver Solver;
+  Anchors Held;
+  AnchoredSystem System;
 };
 
-/// Throws Error(BadInput) for methods that know handles by their positions only.
-void RequirePositions(const HandleProblem& problem, const std::string& method);
+/// The problem again, or Error(BadInput) for methods that know handles by their
+/// positions only where these are not held.
+HandleProblem RequirePositions(HandleProblem problem, const std::string& method);
 }

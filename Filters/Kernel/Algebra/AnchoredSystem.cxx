@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Algebra/AnchoredSystem.h"
+
+#include "Algebra/SparseProduct.h"
+#include "Base/Bytes.h"
+
+#include <algorithm>
+
+namespace cartan
+{
+Anchors Anchors::After(int free, int size)
+{
+  Anchors anchors;
+  anchors.IsHard.assign(size, 1);
+  std::fill_n(anchors.IsHard.begin(), free, 0);
+  return anchors;
+}
+
+Anchors Anchors::Repeated(int count) const
+{
+  Anchors repeated;
+  const std::size_t size = this->IsHard.size() * static_cast<std::size_t>(count);
+  repeated.IsHard.resize(size);
+  repeated.Vertices.resize(size);
+  repeated.Stiffness.resize(this->Stiffness.size() * count);
+  for (std::size_t i = 0; i < size; ++i)
+  {
+    const std::size_t from = i / static_cast<std::size_t>(count);
+    repeated.IsHard[i] = this->IsHard[from];
+    repeated.Vertices[i] = this->Vertices.empty() ? static_cast<int>(from) : this->Vertices[from];
+    if (this->Stiffness.size())
+    {
+      repeated.Stiffness[static_cast<Eigen::Index>(i)] =
+        this->Stiffness[static_cast<Eigen::Index>(from)];
+    }
+  }
+  return repeated;
+}
+
+void AnchoredSystem::Factorize(
+  const SparseMatrix& matrix, Anchors anchors, const ExecutionContext& context)
+{
+  this->Stiffness = std::move(anchors.Stiffness);
+  this->RightHandSide = SparseMatrix();
+  this->Solver.Factorize(matrix, anchors.IsHard, this->Stiffness, anchors.Vertices, context);
+}
+
+void AnchoredSystem::FactorizeFit(const SparseMatrix& laplacian, const Eigen::VectorXd& inverseMass,
+  Anchors anchors, AnchorMode mode, const ExecutionContext& context)
+{
+  if (mode == AnchorMode::Substituted)
+  {
+    this->Factorize(laplacian, std::move(anchors), context);
+    const Eigen::VectorXd mass = inverseMass.cwiseInverse();
+    this->RightHandSide = SparseMatrix(laplacian.rows(), laplacian.cols());
+    this->RightHandSide.setIdentity();
+    this->RightHandSide = (mass.asDiagonal() * this->RightHandSide).eval();
+    return;
+  }
+  const SparseMatrix weighted = inverseMass.asDiagonal() * laplacian;
+  this->Factorize(
+    CheckedProduct(laplacian, weighted, "The system of the fit"), std::move(anchors), context);
+  this->RightHandSide = laplacian;
+}
+
+void AnchoredSystem::Solve(
+  const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const
+{
+  if (this->Stiffness.size() == 0 && this->RightHandSide.size() == 0)
+  {
+    this->Solver.Solve(rightHandSide, values);
+    return;
+  }
+  Field complete = rightHandSide;
+  if (this->RightHandSide.size())
+  {
+    complete = this->RightHandSide * rightHandSide;
+  }
+  if (this->Stiffness.size())
+  {
+    complete += this->Stiffness.asDiagonal() * values;
+  }
+  this->Solver.Solve(complete, values);
+}
+
+std::size_t AnchoredSystem::GetBytes() const
+{
+  return this->Solver.GetBytes() + TotalBytes(this->Stiffness, this->RightHandSide);
+}
+}

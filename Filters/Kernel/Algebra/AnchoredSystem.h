@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Algebra/ConstrainedSolver.h"
+
+namespace cartan
+{
+/// What holds the unknowns of a system.
+struct Anchors
+{
+  std::vector<char> IsHard;  ///< #U, non-zero where the value is given
+  Eigen::VectorXd Stiffness; ///< empty or #U: s > 0 adds s |x - t|^2, see AnchoredSystem
+  std::vector<int> Vertices; ///< empty or #U: the vertex that a message names for an unknown
+
+  /// The first `free` of the unknowns are free, the others hard.
+  static Anchors After(int free, int size);
+
+  /// For `count` unknowns side by side where this has one, such as three
+  /// coordinates.
+  Anchors Repeated(int count) const;
+};
+
+/// How an anchor acts on a least-squares fit of equations.
+enum class AnchorMode
+{
+  Soft,       ///< as one more equation: its place is missed by a little
+  Hard,       ///< held exactly; its own equation stays among those that are fitted
+  Substituted ///< held exactly, and its own equation is left out: noise is fitted less well
+};
+
+/// Solves (A + diag s) x = b + s t for a symmetric positive semidefinite A, with
+/// x = t at hard anchors: the minimum of x^T A x / 2 - b^T x + sum s |x - t|^2 / 2
+/// under them. Factorizes once, solves for many b and t.
+class AnchoredSystem
+{
+public:
+  explicit AnchoredSystem(SolverBackend backend = SolverBackend::Automatic)
+    : Solver(backend)
+  {
+  }
+
+  /// `matrix` has both triangles stored. Throws what ConstrainedSolver throws:
+  /// Error(SingularSystem) naming vertices where a connected part has no anchor.
+  void Factorize(const SparseMatrix& matrix, Anchors anchors, const ExecutionContext& context = {});
+
+  /// The same for a fit of differential coordinates: equations L x = M d of a
+  /// symmetric L, in the weight of M^-1 (`inverseMass`, #U),
+  ///
+  ///   min sum over equations of m_i |(M^-1 L x)_i - d_i|^2 + sum s |x - t|^2,
+  ///
+  /// that is A = L M^-1 L and b = L d; with AnchorMode::Substituted the
+  /// equations of free unknowns alone, A = L and b = M d. Stiffness needs Soft.
+  void FactorizeFit(const SparseMatrix& laplacian, const Eigen::VectorXd& inverseMass,
+    Anchors anchors, AnchorMode mode, const ExecutionContext& context = {});
+
+  /// `rightHandSide` is b (#U x k), the d of FactorizeFit; `values` (#U x k) has the
+  /// t of hard and soft anchors and gets x.
+  void Solve(const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const;
+
+  const std::vector<int>& GetFree() const { return this->Solver.GetFree(); }
+  int GetNumberOfFactorizations() const { return this->Solver.GetNumberOfFactorizations(); }
+  std::size_t GetBytes() const;
+
+private:
+  ConstrainedSolver Solver;
+  Eigen::VectorXd Stiffness;  // empty where nothing is soft
+  SparseMatrix RightHandSide; // from d to b; empty where they are the same
+};
+}
