@@ -5,7 +5,6 @@
 #include "Differential/Laplacian.h"
 #include "Measure/Measures.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -18,69 +17,27 @@ namespace
 /// A determinant below this part of |W|^3 flattens: far above rounding, far
 /// below any scale that features survive.
 constexpr double FlatDeterminant = 1e-12;
-
-double Product(double a, double b)
-{
-  return a * b;
-}
-double Product(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
-{
-  return a.dot(b);
 }
 
-/// Adds row `column` of left^T right to `sum`; `leftColumns` is left by columns.
-template <typename Value>
-void AddProductRow(const SparseRows<Value>& leftColumns, const SparseRows<Value>& right, int column,
-  RowSum<double>& sum)
+void SimilarityDeformer::EdgeForm::DeformBy(Matrices& transforms, const HandleTargets& targets,
+  DeformedSurface& result, const ExecutionContext& context)
 {
-  for (const auto* left = leftColumns.Begin(column); left != leftColumns.End(column); ++left)
+  struct Loan
   {
-    for (const auto* entry = right.Begin(left->Column); entry != right.End(left->Column); ++entry)
+    Matrices& Theirs;
+    Matrices& Ours;
+    Loan(Matrices& theirs, Matrices& ours)
+      : Theirs(theirs)
+      , Ours(ours)
     {
-      sum.Add(entry->Column, Product(left->Coefficient, entry->Coefficient));
+      this->Theirs.swap(this->Ours);
     }
-  }
-}
-
-/// residuals^T residuals + gradients^T differences, symmetric, of `size`
-/// columns. Entries between columns that are both beyond `numberOfFree` are
-/// left out: no solve reads them.
-SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& residuals,
-  const SparseRows<Eigen::Vector3d>& gradients, const SparseRows<Eigen::Vector3d>& differences,
-  const ExecutionContext& context)
-{
-  const SparseRows<double> residualColumns = residuals.Transposed(size);
-  const SparseRows<Eigen::Vector3d> gradientColumns = gradients.Transposed(size);
-  const SparseRows<double> rows = MakeRows<double>(size, context,
-    [&](int begin, int end, SparseRows<double>& part)
-    {
-      RowSum<double> sum(size);
-      for (int row = begin; row < end; ++row)
-      {
-        sum.Clear();
-        AddProductRow(residualColumns, residuals, row, sum);
-        AddProductRow(gradientColumns, differences, row, sum);
-        std::sort(sum.Columns().begin(), sum.Columns().end());
-        for (const int column : sum.Columns())
-        {
-          if (row < numberOfFree || column < numberOfFree)
-          {
-            part.Add(column, sum.At(column));
-          }
-        }
-        part.FinishRow();
-      }
-    });
-  SparseMatrix matrix(size, size);
-  matrix.resizeNonZeros(static_cast<Eigen::Index>(rows.Entries.size()));
-  std::copy(rows.Offsets.begin(), rows.Offsets.end(), matrix.outerIndexPtr());
-  for (std::size_t i = 0; i < rows.Entries.size(); ++i)
-  {
-    matrix.innerIndexPtr()[i] = rows.Entries[i].Column;
-    matrix.valuePtr()[i] = rows.Entries[i].Coefficient;
-  }
-  return matrix;
-}
+    ~Loan() { this->Theirs.swap(this->Ours); }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+  };
+  const Loan loan(transforms, this->Transforms);
+  this->Deform(targets, false, result, context);
 }
 
 SimilarityDeformer::SimilarityDeformer(HandleProblem problem, const Options& options,
@@ -88,297 +45,34 @@ SimilarityDeformer::SimilarityDeformer(HandleProblem problem, const Options& opt
   : SurfaceDeformer(std::move(problem))
   , ConstrainsTransforms(options.ConstrainTransforms)
   , Backend(backend)
-  , MovingHandles(MovingHandleOfVertices(this->Problem))
-  , EdgeWeights(
-      cartan::EdgeWeights(*this->Problem.Mesh, *this->Problem.Rest, this->Problem.Weights, context))
-  , GradientSolver(backend)
-  , PositionSolver(backend)
+  , System(this->Problem, options.CoherenceRings, options.ConstrainTransforms, backend, context)
+  , PositionSystem(backend)
+  , Transforms(Identities(this->Problem.Mesh->NumberOfVertices()))
+  , Scales(Eigen::VectorXd::Ones(this->Problem.Mesh->NumberOfVertices()))
 {
-  const TriangleMesh& mesh = *this->Problem.Mesh;
-  const Points& rest = *this->Problem.Rest;
-  const GradientConstraints constraints = this->ReadConstraints(options);
-  this->RequireDeterminedSurface(constraints);
-
-  this->EdgeLengths.setZero(mesh.NumberOfVertices());
-  Eigen::VectorXd weightSums = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-    {
-      this->EdgeLengths[v] += (rest.row(v) - rest.row(mesh.Neighbor(d))).norm() / mesh.Valence(v);
-      weightSums[v] += std::abs(this->EdgeWeights[d]);
-    }
-  }
-  // A vertex in one place with all its neighbors has no scale of its own.
-  this->EdgeLengths = this->EdgeLengths.cwiseMax(1e-6 * this->EdgeLengths.mean());
-  this->RowScales.setZero(mesh.NumberOfVertices());
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    const double unit = this->EdgeLengths[v] * weightSums[v];
-    this->RowScales[v] = unit > 0.0 ? 1.0 / unit : 0.0;
-  }
-
-  this->Gradients = std::make_unique<RingGradients>(
-    mesh, rest, constraints, std::max(1, options.CoherenceRings), context.Part(0.0, 0.3));
-  this->FactorizeGradients(context.Part(0.3, 1.0));
-
-  this->Transforms = Identities(mesh.NumberOfVertices());
-  this->Scales.setOnes(mesh.NumberOfVertices());
 }
 
 std::size_t SimilarityDeformer::GetBytes() const
 {
-  return this->Problem.GetBytes() + this->Gradients->GetBytes() + this->GradientSolver.GetBytes() +
-    this->PositionSolver.GetBytes() + (this->Edges ? this->Edges->GetBytes() : 0) +
-    TotalBytes(this->MovingHandles, this->SoftPositions, this->EdgeWeights, this->RowScales,
-      this->EdgeLengths, this->GradientStiffness, this->Values, this->DragFields,
-      this->PositionColumns, this->Transforms, this->Scales);
-}
-
-GradientConstraints SimilarityDeformer::ReadConstraints(const Options& options)
-{
-  if (!this->Problem.ConstrainPositions && !options.ConstrainTransforms)
-  {
-    throw Error(ErrorCode::BadInput,
-      "Moving handles hold neither positions nor transforms, so nothing moves: switch "
-      "ConstrainHandlePositions or ConstrainHandleTransforms on.");
-  }
-  const TriangleMesh& mesh = *this->Problem.Mesh;
-  GradientConstraints constraints;
-  const Hold hold = this->Problem.ConstrainPositions ? Hold::AllHandles : Hold::PinnedOnly;
-  constraints.IsUnknown = UnknownVertices(this->Problem, hold);
-  this->SoftPositions = SquaredSoftWeights(this->Problem, constraints.IsUnknown, hold);
-  constraints.IsGiven.assign(mesh.NumberOfVertices(), 0);
-  constraints.IsUntouched.assign(mesh.NumberOfVertices(), 0);
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    const bool isMoving = this->MovingHandles[v] >= 0;
-    const bool isHeld = !this->Problem.SoftWeights.size() || this->Problem.SoftWeights[v] > 0.0;
-    if (mesh.IsUsed(v) && this->Problem.Handle[v] > 0 && isHeld)
-    {
-      constraints.IsUntouched[v] = 1;
-      constraints.IsGiven[v] = options.ConstrainTransforms || !isMoving;
-    }
-  }
-  return constraints;
-}
-
-void SimilarityDeformer::RequireDeterminedSurface(const GradientConstraints& constraints) const
-{
-  const TriangleMesh& mesh = *this->Problem.Mesh;
-  const Points& rest = *this->Problem.Rest;
-  IdSample unheld;
-  IdSample unturned;
-  std::vector<char> isVisited(mesh.NumberOfVertices(), 0);
-  std::vector<int> part;
-  for (int seed = 0; seed < mesh.NumberOfVertices(); ++seed)
-  {
-    if (!constraints.IsUnknown[seed] || isVisited[seed])
-    {
-      continue;
-    }
-    // A part of unknown vertices, with what its gradients see of the handles.
-    bool isTransformHeld = false;
-    std::vector<int> held;
-    part.assign(1, seed);
-    isVisited[seed] = 1;
-    for (std::size_t i = 0; i < part.size(); ++i)
-    {
-      const int v = part[i];
-      isTransformHeld = isTransformHeld || constraints.IsGiven[v];
-      if (this->SoftPositions[v] > 0.0)
-      {
-        held.push_back(v);
-      }
-      for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-      {
-        const int w = mesh.Neighbor(d);
-        if (isVisited[w])
-        {
-          continue;
-        }
-        if (constraints.IsUnknown[w])
-        {
-          isVisited[w] = 1;
-          part.push_back(w);
-          continue;
-        }
-        isTransformHeld = isTransformHeld || constraints.IsGiven[w];
-        held.push_back(w);
-        for (int e = mesh.RingBegin(w); e < mesh.RingEnd(w); ++e)
-        {
-          if (!constraints.IsUnknown[mesh.Neighbor(e)])
-          {
-            held.push_back(mesh.Neighbor(e));
-          }
-        }
-      }
-    }
-    if (held.empty())
-    {
-      for (const int v : part)
-      {
-        unheld.Add(v);
-      }
-      continue;
-    }
-    if (!isTransformHeld)
-    {
-      // An affine map that keeps the held positions costs nothing, so they must
-      // leave only the identity.
-      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-      for (const int v : held)
-      {
-        mean += rest.row(v).transpose() / static_cast<double>(held.size());
-      }
-      Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-      for (const int v : held)
-      {
-        const Eigen::Vector3d difference = rest.row(v).transpose() - mean;
-        moments += difference * difference.transpose();
-      }
-      const Eigen::Vector3d eigenvalues =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly)
-          .eigenvalues();
-      if (!(eigenvalues[0] > 1e-10 * eigenvalues[2]))
-      {
-        for (const int v : part)
-        {
-          unturned.Add(v);
-        }
-      }
-    }
-  }
-  if (!unheld.IsEmpty())
-  {
-    throw Error(ErrorCode::SingularSystem,
-      "The system is singular: " + unheld.Describe("point", "points") +
-        " in connected parts where no position is held. Pin a handle there, or switch "
-        "ConstrainHandlePositions on.");
-  }
-  if (!unturned.IsEmpty())
-  {
-    throw Error(ErrorCode::SingularSystem,
-      "The system is singular: " + unturned.Describe("point", "points") +
-        " in connected parts where only positions in one plane are held, about which the surface "
-        "could shear. Pin a handle there, hold points outside of the plane too, or switch "
-        "ConstrainHandleTransforms on.");
-  }
-}
-
-SparseRows<double> SimilarityDeformer::LaplacianRows() const
-{
-  const TriangleMesh& mesh = *this->Problem.Mesh;
-  SparseRows<double> rows;
-  for (const int v : this->Gradients->ActiveVertices())
-  {
-    double sum = 0.0;
-    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-    {
-      const double weight = this->RowScales[v] * this->EdgeWeights[d];
-      rows.Add(this->Gradients->PositionColumn(mesh.Neighbor(d)), weight);
-      sum += weight;
-    }
-    rows.Add(this->Gradients->PositionColumn(v), -sum);
-    rows.FinishRow();
-  }
-  return rows;
-}
-
-void SimilarityDeformer::FactorizeGradients(const ExecutionContext& context)
-{
-  const RingGradients& gradients = *this->Gradients;
-  const SparseRows<Eigen::Vector3d>& rows = gradients.Rows();
-  const int size = gradients.NumberOfColumns();
-
-  // s_i (D - M_i delta_i): the row of D less the coefficients of M_i delta_i.
-  const SparseRows<double> laplacians = this->LaplacianRows();
-  SparseRows<double> residuals;
-  for (std::size_t a = 0; a < gradients.ActiveVertices().size(); ++a)
-  {
-    const int v = gradients.ActiveVertices()[a];
-    Eigen::Vector3d delta = Eigen::Vector3d::Zero();
-    const int active = static_cast<int>(a);
-    for (const auto* entry = laplacians.Begin(active); entry != laplacians.End(active); ++entry)
-    {
-      delta += entry->Coefficient *
-        gradients.DisplacedRest().row(gradients.Vertex(entry->Column)).transpose();
-      residuals.Add(entry->Column, entry->Coefficient);
-    }
-    const int row = gradients.Row(v);
-    for (const auto* entry = rows.Begin(row); entry != rows.End(row); ++entry)
-    {
-      residuals.Add(entry->Column, -entry->Coefficient.dot(delta));
-    }
-    residuals.FinishRow();
-  }
-
-  // sum_i sum_j |M_i - M_j|^2 = sum_i M_i . 2 sum_j (M_i - M_j), as each pair
-  // occurs in both orders.
-  const SparseRows<Eigen::Vector3d> differences = MakeRows<Eigen::Vector3d>(rows.Count(), context,
-    [&](int begin, int end, SparseRows<Eigen::Vector3d>& part)
-    {
-      RowSum<Eigen::Vector3d> sum(size);
-      const auto add = [&](int row, double factor)
-      {
-        for (const auto* entry = rows.Begin(row); entry != rows.End(row); ++entry)
-        {
-          sum.Add(entry->Column, factor * entry->Coefficient);
-        }
-      };
-      for (int row = begin; row < end; ++row)
-      {
-        sum.Clear();
-        const std::vector<int>& coherent = gradients.CoherentRows()[row];
-        add(row, 2.0 * static_cast<double>(coherent.size()));
-        for (const int other : coherent)
-        {
-          add(other, -2.0);
-        }
-        for (const int column : sum.Columns())
-        {
-          part.Add(column, sum.At(column));
-        }
-        part.FinishRow();
-      }
-    });
-  context.Report(0.1);
-
-  const SparseMatrix matrix =
-    NormalMatrix(size, gradients.NumberOfUnknowns(), residuals, rows, differences, context);
-  context.Report(0.3);
-  std::vector<char> isFixed(size, 1);
-  std::fill(isFixed.begin(), isFixed.begin() + gradients.NumberOfUnknowns(), 0);
-  std::vector<int> vertices(size, -1);
-  this->GradientStiffness.setZero(size);
-  for (int column = 0; column < gradients.NumberOfPositions(); ++column)
-  {
-    const int v = gradients.Vertex(column);
-    vertices[column] = v;
-    this->GradientStiffness[column] =
-      this->SoftPositions[v] / (this->EdgeLengths[v] * this->EdgeLengths[v]);
-  }
-  this->GradientSolver.Factorize(
-    matrix, isFixed, this->GradientStiffness, vertices, context.Part(0.3, 1.0));
-  this->Values.setZero(size, 3);
+  return this->Problem.GetBytes() + this->System.GetBytes() + this->PositionSystem.GetBytes() +
+    (this->Edges ? this->Edges->GetBytes() : 0) +
+    TotalBytes(this->PositionColumns, this->Transforms, this->Scales);
 }
 
 void SimilarityDeformer::FactorizePositions(const ExecutionContext& context)
 {
-  const RingGradients& gradients = *this->Gradients;
+  const RingGradients& gradients = this->System.GetGradients();
   const int size = gradients.NumberOfPositions();
-  const SparseRows<double> laplacians = this->LaplacianRows();
+  const SparseRows<double> laplacians = this->System.LaplacianRows(*this->Problem.Mesh);
   const SparseMatrix matrix =
     NormalMatrix(size, gradients.NumberOfUnknowns(), laplacians, {}, {}, context);
-  std::vector<char> isFixed(size, 1);
-  std::fill(isFixed.begin(), isFixed.begin() + gradients.NumberOfUnknowns(), 0);
-  std::vector<int> vertices(size);
+  Anchors anchors = Anchors::After(gradients.NumberOfUnknowns(), size);
+  anchors.Stiffness = this->System.GetStiffness().head(size);
   for (int column = 0; column < size; ++column)
   {
-    vertices[column] = gradients.Vertex(column);
+    anchors.Vertices.push_back(gradients.Vertex(column));
   }
-  this->PositionSolver.Factorize(
-    matrix, isFixed, this->GradientStiffness.head(size), vertices, context);
+  this->PositionSystem.Factorize(matrix, std::move(anchors), context);
   this->PositionColumns = laplacians.Transposed(size);
   this->ArePositionsFactorized = true;
 }
@@ -390,112 +84,20 @@ void SimilarityDeformer::Prepare(const ExecutionContext& context)
   if (this->Reconstruction == SimilarityReconstruction::LeastSquares &&
     !this->ArePositionsFactorized)
   {
-    this->FactorizePositions(context);
+    this->FactorizePositions(context.Part(0.0, needsEdges && !this->Edges ? 0.5 : 1.0));
   }
   if (needsEdges && !this->Edges)
   {
-    this->Edges =
-      std::make_unique<EdgeForm>(this->Problem, this->Transforms, this->Backend, context);
+    this->Edges = std::make_unique<EdgeForm>(this->Problem, this->Backend, context.Part(0.5, 1.0));
   }
+  context.Report(1.0);
 }
 
 int SimilarityDeformer::GetNumberOfFactorizations() const
 {
-  return this->GradientSolver.GetNumberOfFactorizations() +
-    this->PositionSolver.GetNumberOfFactorizations() +
+  return this->System.GetNumberOfFactorizations() +
+    this->PositionSystem.GetNumberOfFactorizations() +
     (this->Edges ? this->Edges->GetNumberOfFactorizations() : 0);
-}
-
-void SimilarityDeformer::SolveGradients(const HandleTargets& targets)
-{
-  const RingGradients& gradients = *this->Gradients;
-  Field rightHandSide = Field::Zero(gradients.NumberOfColumns(), 3);
-  for (int column = 0; column < gradients.NumberOfUnknowns(); ++column)
-  {
-    if (this->GradientStiffness[column] > 0.0)
-    {
-      const int v = gradients.Vertex(column);
-      rightHandSide.row(column) = this->GradientStiffness[column] *
-        HandleTarget(this->Problem, targets, v, this->MovingHandles[v]).transpose();
-    }
-  }
-  this->GradientSolver.Solve(rightHandSide, this->Values);
-}
-
-void SimilarityDeformer::ComputeDragFields()
-{
-  const RingGradients& gradients = *this->Gradients;
-  const int numberOfMoving = static_cast<int>(this->Problem.Moving.size());
-  // Handle k in its rest place and all others at the origin, then handle k all
-  // in one place.
-  Field rightHandSide = Field::Zero(gradients.NumberOfColumns(), 4 * numberOfMoving);
-  Field fields = rightHandSide;
-  for (int column = 0; column < gradients.NumberOfPositions(); ++column)
-  {
-    const int v = gradients.Vertex(column);
-    const int handle = this->MovingHandles[v];
-    if (handle < 0)
-    {
-      continue;
-    }
-    Eigen::RowVector4d target;
-    target << this->Problem.Rest->row(v), 1.0;
-    fields.block<1, 4>(column, 4 * handle) = target;
-    rightHandSide.block<1, 4>(column, 4 * handle) = this->GradientStiffness[column] * target;
-  }
-  int column = gradients.NumberOfPositions();
-  for (const int v : gradients.GivenVertices())
-  {
-    if (this->MovingHandles[v] >= 0)
-    {
-      fields.block<3, 3>(column, 4 * this->MovingHandles[v]).setIdentity();
-    }
-    column += 3;
-  }
-  this->GradientSolver.Solve(rightHandSide, fields);
-  this->DragFields = fields.topRows(gradients.NumberOfUnknowns());
-}
-
-void SimilarityDeformer::BlendDragFields(
-  const HandleTargets& targets, const ExecutionContext& context)
-{
-  const RingGradients& gradients = *this->Gradients;
-  context.For(gradients.NumberOfUnknowns(),
-    [&](int begin, int end)
-    {
-      for (int column = begin; column < end; ++column)
-      {
-        // The motions' identities together leave the rest shape.
-        Eigen::Vector3d position =
-          gradients.DisplacedRest().row(gradients.Vertex(column)).transpose();
-        for (std::size_t k = 0; k < targets.Motions.size(); ++k)
-        {
-          const double* phi = this->DragFields.row(column).data() + 4 * k;
-          const Eigen::Map<const Eigen::Vector3d> along(phi);
-          position +=
-            targets.Motions[k].Linear * along - along + phi[3] * targets.Motions[k].Translation;
-        }
-        this->Values.row(column) = position.transpose();
-      }
-    });
-}
-
-void SimilarityDeformer::ReadTargets(const HandleTargets& targets)
-{
-  const RingGradients& gradients = *this->Gradients;
-  for (int column = gradients.NumberOfUnknowns(); column < gradients.NumberOfPositions(); ++column)
-  {
-    const int v = gradients.Vertex(column);
-    this->Values.row(column) =
-      HandleTarget(this->Problem, targets, v, this->MovingHandles[v]).transpose();
-  }
-  int column = gradients.NumberOfPositions();
-  for (const int v : gradients.GivenVertices())
-  {
-    this->Values.middleRows<3>(column) =
-      HandleTransform(targets, v, this->MovingHandles[v]).transpose();
-    column += 3;
-  }
 }
 
 void SimilarityDeformer::SetTransform(int vertex, const Eigen::Matrix3d& gradient)
@@ -508,20 +110,8 @@ void SimilarityDeformer::SetTransform(int vertex, const Eigen::Matrix3d& gradien
 void SimilarityDeformer::ComputeTransforms(
   const HandleTargets& targets, const ExecutionContext& context)
 {
-  const RingGradients& gradients = *this->Gradients;
-  this->ReadTargets(targets);
-  if (targets.IsPerVertex())
-  {
-    this->SolveGradients(targets);
-  }
-  else
-  {
-    if (this->DragFields.rows() == 0)
-    {
-      this->ComputeDragFields();
-    }
-    this->BlendDragFields(targets, context);
-  }
+  const RingGradients& gradients = this->System.GetGradients();
+  this->System.Solve(this->Problem, targets, context);
   context.Report(0.6);
 
   const int numberOfVertices = this->Problem.Mesh->NumberOfVertices();
@@ -532,11 +122,11 @@ void SimilarityDeformer::ComputeTransforms(
       {
         if (gradients.IsVariable(v))
         {
-          this->SetTransform(v, gradients.Evaluate(gradients.Row(v), this->Values));
+          this->SetTransform(v, this->System.Gradient(v));
         }
-        else if (this->MovingHandles[v] >= 0)
+        else if (this->System.GetMovingHandles()[v] >= 0)
         {
-          this->SetTransform(v, HandleTransform(targets, v, this->MovingHandles[v]));
+          this->SetTransform(v, HandleTransform(targets, v, this->System.GetMovingHandles()[v]));
         }
       }
     });
@@ -554,7 +144,7 @@ void SimilarityDeformer::RefitTransforms(
     {
       for (int v = begin; v < end; ++v)
       {
-        if (!this->Gradients->IsVariable(v))
+        if (!this->System.GetGradients().IsVariable(v))
         {
           continue;
         }
@@ -578,25 +168,10 @@ void SimilarityDeformer::RefitTransforms(
     });
 }
 
-void SimilarityDeformer::PullBack(Points& positions) const
-{
-  const RingGradients& gradients = *this->Gradients;
-  const Points& displaced = gradients.DisplacedRest();
-  const Points& rest = *this->Problem.Rest;
-  for (int column = 0; column < gradients.NumberOfUnknowns(); ++column)
-  {
-    const int v = gradients.Vertex(column);
-    // v~ = v~' + M (v - v'), section 3.3
-    positions.row(v) = this->Values.row(column) +
-      (rest.row(v) - displaced.row(v)) *
-        gradients.Evaluate(gradients.Row(v), this->Values).transpose();
-  }
-}
-
 void SimilarityDeformer::SolveLeastSquares(Points& positions, const ExecutionContext& context)
 {
   const TriangleMesh& mesh = *this->Problem.Mesh;
-  const RingGradients& gradients = *this->Gradients;
+  const RingGradients& gradients = this->System.GetGradients();
   const Points& rest = *this->Problem.Rest;
   // s_i T_i delta_i; those of held neighbors belong to the sum too, because
   // their D sees unknown vertices.
@@ -610,9 +185,11 @@ void SimilarityDeformer::SolveLeastSquares(Points& positions, const ExecutionCon
         Eigen::Vector3d delta = Eigen::Vector3d::Zero();
         for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
         {
-          delta += this->EdgeWeights[d] * (rest.row(mesh.Neighbor(d)) - rest.row(v)).transpose();
+          delta += this->System.GetEdgeWeights()[d] *
+            (rest.row(mesh.Neighbor(d)) - rest.row(v)).transpose();
         }
-        details.row(a) = this->RowScales[v] * (MatrixAt(this->Transforms, v) * delta).transpose();
+        details.row(a) =
+          this->System.GetRowScales()[v] * (MatrixAt(this->Transforms, v) * delta).transpose();
       }
     });
   const int size = gradients.NumberOfPositions();
@@ -622,8 +199,7 @@ void SimilarityDeformer::SolveLeastSquares(Points& positions, const ExecutionCon
     {
       for (int column = begin; column < end; ++column)
       {
-        Eigen::RowVector3d sum =
-          this->GradientStiffness[column] * positions.row(gradients.Vertex(column));
+        Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
         for (const auto* entry = this->PositionColumns.Begin(column);
              entry != this->PositionColumns.End(column); ++entry)
         {
@@ -632,8 +208,12 @@ void SimilarityDeformer::SolveLeastSquares(Points& positions, const ExecutionCon
         rightHandSide.row(column) = sum;
       }
     });
-  Field values = this->Values.topRows(size);
-  this->PositionSolver.Solve(rightHandSide, values);
+  Field values(size, 3);
+  for (int column = 0; column < size; ++column)
+  {
+    values.row(column) = positions.row(gradients.Vertex(column));
+  }
+  this->PositionSystem.Solve(rightHandSide, values);
   for (int column = 0; column < gradients.NumberOfUnknowns(); ++column)
   {
     positions.row(gradients.Vertex(column)) = values.row(column);
@@ -645,13 +225,13 @@ void SimilarityDeformer::Reconstruct(
 {
   if (this->Reconstruction == SimilarityReconstruction::EdgeForm)
   {
-    this->Edges->Deform(targets, false, result, context);
+    this->Edges->DeformBy(this->Transforms, targets, result, context);
     return;
   }
-  result.Positions = HandlePositions(this->Problem, targets, this->MovingHandles);
+  result.Positions = HandlePositions(this->Problem, targets, this->System.GetMovingHandles());
   if (this->Reconstruction == SimilarityReconstruction::Affine)
   {
-    this->PullBack(result.Positions);
+    this->System.PullBack(*this->Problem.Rest, result.Positions);
   }
   else
   {
@@ -679,9 +259,9 @@ void SimilarityDeformer::WarnOfSingularTransforms(const HandleTargets& targets)
   const bool isPerVertex = targets.Transforms.rows() > 0;
   if (isPerVertex)
   {
-    for (std::size_t v = 0; v < this->MovingHandles.size(); ++v)
+    for (std::size_t v = 0; v < this->System.GetMovingHandles().size(); ++v)
     {
-      if (this->MovingHandles[v] >= 0)
+      if (this->System.GetMovingHandles()[v] >= 0)
       {
         look(MatrixAt(targets.Transforms, static_cast<Eigen::Index>(v)), static_cast<long long>(v));
       }
@@ -717,7 +297,7 @@ void SimilarityDeformer::Deform(const HandleTargets& targets, bool wantTransform
 {
   this->Prepare(context.Part(0.0, 0.1));
   this->WarnOfSingularTransforms(targets);
-  this->ComputeTransforms(targets, context);
+  this->ComputeTransforms(targets, context.Part(0.1, 0.5));
   context.Report(0.5);
   this->Reconstruct(targets, result, context.Part(0.5, 0.6));
   if (this->Reconstruction != SimilarityReconstruction::Affine)
@@ -728,7 +308,8 @@ void SimilarityDeformer::Deform(const HandleTargets& targets, bool wantTransform
       const bool isFromEdges =
         refit > 0 || this->Reconstruction == SimilarityReconstruction::EdgeForm;
       this->RefitTransforms(result.Positions, isFromEdges, context);
-      this->Edges->Deform(targets, false, result, context.Part(begin, begin + 0.4 / this->Refits));
+      this->Edges->DeformBy(
+        this->Transforms, targets, result, context.Part(begin, begin + 0.4 / this->Refits));
     }
   }
   result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Deformation/FrameDeformer.h"
-#include "Differential/RingGradients.h"
+#include "Deformation/GradientSystem.h"
 
 namespace cartan
 {
@@ -99,7 +99,10 @@ public:
   const Eigen::VectorXd& GetScaleFactors() const { return this->Scales; }
 
   int GetNumberOfFactorizations() const override;
-  int GetNumberOfFreeVertices() const override { return this->Gradients->NumberOfUnknowns(); }
+  int GetNumberOfFreeVertices() const override
+  {
+    return this->System.GetGradients().NumberOfUnknowns();
+  }
   std::string GetWarning() const override { return this->Warning; }
   std::size_t GetBytes() const override;
 
@@ -113,7 +116,7 @@ public:
 
   int GetNumberOfDisplacedVertices() const
   {
-    return this->Gradients->GetNumberOfDisplacedVertices();
+    return this->System.GetGradients().GetNumberOfDisplacedVertices();
   }
 
 private:
@@ -121,58 +124,33 @@ private:
   class EdgeForm : public FrameDeformer
   {
   public:
-    EdgeForm(const HandleProblem& problem, const Matrices& transforms, SolverBackend backend,
-      const ExecutionContext& context)
+    EdgeForm(const HandleProblem& problem, SolverBackend backend, const ExecutionContext& context)
       : FrameDeformer(problem, backend, context)
-      , Given(transforms)
     {
     }
+
+    /// Borrows `transforms` (#V x 9), which come back as they were.
+    void DeformBy(Matrices& transforms, const HandleTargets& targets, DeformedSurface& result,
+      const ExecutionContext& context);
 
   protected:
-    void ComputeTransforms(const HandleTargets&, const ExecutionContext&) override
-    {
-      this->Transforms = this->Given;
-    }
-
-  private:
-    const Matrices& Given;
+    void ComputeTransforms(const HandleTargets&, const ExecutionContext&) override {}
   };
 
-  GradientConstraints ReadConstraints(const Options& options);
-  void RequireDeterminedSurface(const GradientConstraints& constraints) const;
-  SparseRows<double> LaplacianRows() const;
-  void FactorizeGradients(const ExecutionContext& context);
   void FactorizePositions(const ExecutionContext& context);
-
-  void ReadTargets(const HandleTargets& targets);
-  void SolveGradients(const HandleTargets& targets);
-  void ComputeDragFields();
-  void BlendDragFields(const HandleTargets& targets, const ExecutionContext& context);
   void SetTransform(int vertex, const Eigen::Matrix3d& gradient);
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context);
   void RefitTransforms(const Points& positions, bool goesBeyond, const ExecutionContext& context);
   void Reconstruct(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
-  void PullBack(Points& positions) const;
   void SolveLeastSquares(Points& positions, const ExecutionContext& context);
   void WarnOfSingularTransforms(const HandleTargets& targets);
 
   bool ConstrainsTransforms;
   SolverBackend Backend;
-  std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
-  Eigen::VectorXd SoftPositions;  ///< #V, w^2 of softly held positions
-  Eigen::VectorXd EdgeWeights;    ///< #D
-  Eigen::VectorXd RowScales;      ///< #V, s_i of the functional
-  Eigen::VectorXd EdgeLengths;    ///< #V, h_i
+  GradientSystem System;
 
-  std::unique_ptr<RingGradients> Gradients;
-  ConstrainedSolver GradientSolver;
-  Eigen::VectorXd GradientStiffness; ///< #columns
-  Field Values;                      ///< #columns x 3
-  /// #unknown columns x 4 #Moving, see the class; empty until first needed.
-  Field DragFields;
-
-  ConstrainedSolver PositionSolver;
+  AnchoredSystem PositionSystem;
   bool ArePositionsFactorized = false;
   SparseRows<double> PositionColumns; ///< by position: active vertex, s_i D's coefficient
   std::unique_ptr<EdgeForm> Edges;

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/Bytes.h"
+#include "Base/ExecutionContext.h"
+#include "Base/Types.h"
+
+#include <algorithm>
+#include <functional>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace cartan
+{
+/// Rows of a sparse matrix whose entries are of type Value.
+template <typename Value>
+struct SparseRows
+{
+  struct Entry
+  {
+    int Column;
+    Value Coefficient;
+  };
+  std::vector<std::size_t> Offsets = { 0 };
+  std::vector<Entry> Entries;
+
+  int Count() const { return static_cast<int>(this->Offsets.size()) - 1; }
+  const Entry* Begin(int row) const { return this->Entries.data() + this->Offsets[row]; }
+  const Entry* End(int row) const { return this->Entries.data() + this->Offsets[row + 1]; }
+  void Add(int column, const Value& value) { this->Entries.push_back({ column, value }); }
+  void FinishRow() { this->Offsets.push_back(this->Entries.size()); }
+
+  /// The same matrix by columns: row and column change places.
+  SparseRows Transposed(int numberOfColumns) const
+  {
+    SparseRows transposed;
+    transposed.Offsets.assign(static_cast<std::size_t>(numberOfColumns) + 1, 0);
+    for (const Entry& entry : this->Entries)
+    {
+      ++transposed.Offsets[entry.Column + 1];
+    }
+    for (int column = 0; column < numberOfColumns; ++column)
+    {
+      transposed.Offsets[column + 1] += transposed.Offsets[column];
+    }
+    transposed.Entries.resize(this->Entries.size());
+    std::vector<std::size_t> next(transposed.Offsets.begin(), transposed.Offsets.end() - 1);
+    for (int row = 0; row < this->Count(); ++row)
+    {
+      for (const Entry* entry = this->Begin(row); entry != this->End(row); ++entry)
+      {
+        transposed.Entries[next[entry->Column]++] = { row, entry->Coefficient };
+      }
+    }
+    return transposed;
+  }
+};
+
+template <typename Value>
+std::size_t BytesOf(const SparseRows<Value>& rows)
+{
+  return TotalBytes(rows.Offsets, rows.Entries);
+}
+
+/// `count` rows; makeRange(begin, end, rows) appends those from begin to end - 1,
+/// in any order of the ranges and from any thread.
+template <typename Value>
+SparseRows<Value> MakeRows(int count, const ExecutionContext& context,
+  const std::function<void(int begin, int end, SparseRows<Value>& rows)>& makeRange)
+{
+  std::vector<std::pair<int, SparseRows<Value>>> parts;
+  std::mutex mutex;
+  context.For(count,
+    [&](int begin, int end)
+    {
+      SparseRows<Value> part;
+      makeRange(begin, end, part);
+      const std::lock_guard<std::mutex> lock(mutex);
+      parts.emplace_back(begin, std::move(part));
+    });
+  std::sort(
+    parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  SparseRows<Value> all;
+  for (auto& [begin, part] : parts)
+  {
+    if (begin == 0)
+    {
+      all = std::move(part);
+      continue;
+    }
+    for (int row = 0; row < part.Count(); ++row)
+    {
+      all.Offsets.push_back(all.Entries.size() + part.Offsets[row + 1]);
+    }
+    all.Entries.insert(all.Entries.end(), part.Entries.begin(), part.Entries.end());
+    part = {};
+  }
+  return all;
+}
+
+/// A row in the making: sums by column.
+template <typename Value>
+class RowSum
+{
+public:
+  explicit RowSum(int numberOfColumns)
+    : Values(numberOfColumns)
+    , LastRow(numberOfColumns, 0)
+  {
+  }
+
+  void Clear()
+  {
+    this->Touched.clear();
+    ++this->Row;
+  }
+
+  void Add(int column, const Value& value)
+  {
+    if (this->LastRow[column] == this->Row)
+    {
+      this->Values[column] += value;
+      return;
+    }
+    this->LastRow[column] = this->Row;
+    this->Values[column] = value;
+    this->Touched.push_back(column);
+  }
+
+  /// The columns that were added to, in the order of that.
+  std::vector<int>& Columns() { return this->Touched; }
+  const Value& At(int column) const { return this->Values[column]; }
+
+private:
+  std::vector<Value> Values;
+  std::vector<int> LastRow;
+  std::vector<int> Touched;
+  int Row = 0; // counts from 1: LastRow starts with 0
+};
+
+/// residuals^T residuals + gradients^T differences, symmetric, of `size`
+/// columns. Entries between columns that are both beyond `numberOfFree` are
+/// left out: no solve reads them. Throws Error(TooLarge) where the matrix has more
+/// entries than it can index.
+SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& residuals,
+  const SparseRows<Eigen::Vector3d>& gradients, const SparseRows<Eigen::Vector3d>& differences,
+  const ExecutionContext& context);
+}

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Deformation/GradientSystem.h"
+
+#include "Differential/Laplacian.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cartan
+{
+namespace
+{
+/// A connected part of the unknown vertices, with what its gradients see of the
+/// handles.
+struct UnknownPart
+{
+  std::vector<int> Vertices;
+  std::vector<int> Held; ///< whose positions are given
+  bool IsTransformHeld = false;
+};
+
+UnknownPart GatherPart(const TriangleMesh& mesh, const GradientConstraints& constraints,
+  const Eigen::VectorXd& softPositions, int seed, std::vector<char>& isVisited)
+{
+  UnknownPart part;
+  part.Vertices.push_back(seed);
+  isVisited[seed] = 1;
+  for (std::size_t i = 0; i < part.Vertices.size(); ++i)
+  {
+    const int v = part.Vertices[i];
+    part.IsTransformHeld = part.IsTransformHeld || constraints.IsGiven[v];
+    if (softPositions[v] > 0.0)
+    {
+      part.Held.push_back(v);
+    }
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      const int w = mesh.Neighbor(d);
+      if (isVisited[w])
+      {
+        continue;
+      }
+      if (constraints.IsUnknown[w])
+      {
+        isVisited[w] = 1;
+        part.Vertices.push_back(w);
+        continue;
+      }
+      part.IsTransformHeld = part.IsTransformHeld || constraints.IsGiven[w];
+      part.Held.push_back(w);
+      for (int e = mesh.RingBegin(w); e < mesh.RingEnd(w); ++e)
+      {
+        if (!constraints.IsUnknown[mesh.Neighbor(e)])
+        {
+          part.Held.push_back(mesh.Neighbor(e));
+        }
+      }
+    }
+  }
+  return part;
+}
+
+/// Whether points are not all in one plane. An affine map that keeps held
+/// positions costs nothing, so they must leave only the identity.
+bool SpansSpace(const Points& rest, const std::vector<int>& vertices)
+{
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const int v : vertices)
+  {
+    mean += rest.row(v).transpose() / static_cast<double>(vertices.size());
+  }
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const int v : vertices)
+  {
+    const Eigen::Vector3d difference = rest.row(v).transpose() - mean;
+    moments += difference * difference.transpose();
+  }
+  const Eigen::Vector3d eigenvalues =
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly).eigenvalues();
+  return eigenvalues[0] > 1e-10 * eigenvalues[2];
+}
+}
+
+GradientSystem::GradientSystem(const HandleProblem& problem, int coherenceRings,
+  bool constrainTransforms, SolverBackend backend, const ExecutionContext& context)
+  : MovingHandles(MovingHandleOfVertices(problem))
+  , EdgeWeights(cartan::EdgeWeights(*problem.Mesh, *problem.Rest, problem.Weights, context))
+  , System(backend)
+{
+  const GradientConstraints constraints = this->ReadConstraints(problem, constrainTransforms);
+  this->RequireDeterminedSurface(problem, constraints);
+  this->FindScales(*problem.Mesh, *problem.Rest);
+  this->Gradients = std::make_unique<RingGradients>(
+    *problem.Mesh, *problem.Rest, constraints, std::max(1, coherenceRings), context.Part(0.0, 0.3));
+  this->Factorize(*problem.Mesh, context.Part(0.3, 1.0));
+}
+
+GradientConstraints GradientSystem::ReadConstraints(
+  const HandleProblem& problem, bool constrainTransforms)
+{
+  if (!problem.ConstrainPositions && !constrainTransforms)
+  {
+    throw Error(ErrorCode::BadInput,
+      "Moving handles hold neither positions nor transforms, so nothing moves: switch "
+      "ConstrainHandlePositions or ConstrainHandleTransforms on.");
+  }
+  const TriangleMesh& mesh = *problem.Mesh;
+  GradientConstraints constraints;
+  const Hold hold = problem.ConstrainPositions ? Hold::AllHandles : Hold::PinnedOnly;
+  constraints.IsUnknown = UnknownVertices(problem, hold);
+  this->SoftPositions = SquaredSoftWeights(problem, constraints.IsUnknown, hold);
+  constraints.IsGiven.assign(mesh.NumberOfVertices(), 0);
+  constraints.IsUntouched.assign(mesh.NumberOfVertices(), 0);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    const bool isMoving = this->MovingHandles[v] >= 0;
+    const bool isHeld = !problem.SoftWeights.size() || problem.SoftWeights[v] > 0.0;
+    if (mesh.IsUsed(v) && problem.Handle[v] > 0 && isHeld)
+    {
+      constraints.IsUntouched[v] = 1;
+      constraints.IsGiven[v] = constrainTransforms || !isMoving;
+    }
+  }
+  return constraints;
+}
+
+void GradientSystem::RequireDeterminedSurface(
+  const HandleProblem& problem, const GradientConstraints& constraints) const
+{
+  const TriangleMesh& mesh = *problem.Mesh;
+  IdSample unheld;
+  IdSample unturned;
+  std::vector<char> isVisited(mesh.NumberOfVertices(), 0);
+  for (int seed = 0; seed < mesh.NumberOfVertices(); ++seed)
+  {
+    if (!constraints.IsUnknown[seed] || isVisited[seed])
+    {
+      continue;
+    }
+    const UnknownPart part = GatherPart(mesh, constraints, this->SoftPositions, seed, isVisited);
+    IdSample* const lack = part.Held.empty()                         ? &unheld
+      : part.IsTransformHeld || SpansSpace(*problem.Rest, part.Held) ? nullptr
+                                                                     : &unturned;
+    for (std::size_t i = 0; lack && i < part.Vertices.size(); ++i)
+    {
+      lack->Add(part.Vertices[i]);
+    }
+  }
+  if (!unheld.IsEmpty())
+  {
+    throw Error(ErrorCode::SingularSystem,
+      "The system is singular: " + unheld.Describe("point", "points") +
+        " in connected parts where no position is held. Pin a handle there, or switch "
+        "ConstrainHandlePositions on.");
+  }
+  if (!unturned.IsEmpty())
+  {
+    throw Error(ErrorCode::SingularSystem,
+      "The system is singular: " + unturned.Describe("point", "points") +
+        " in connected parts where only positions in one plane are held, about which the surface "
+        "could shear. Pin a handle there, hold points outside of the plane too, or switch "
+        "ConstrainHandleTransforms on.");
+  }
+}
+
+/// h_i and s_i = 1 / (h_i sum_j |w_ij|).
+void GradientSystem::FindScales(const TriangleMesh& mesh, const Points& rest)
+{
+  this->EdgeLengths.setZero(mesh.NumberOfVertices());
+  Eigen::VectorXd weightSums = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      this->EdgeLengths[v] += (rest.row(v) - rest.row(mesh.Neighbor(d))).norm() / mesh.Valence(v);
+      weightSums[v] += std::abs(this->EdgeWeights[d]);
+    }
+  }
+  // A vertex in one place with all its neighbors has no scale of its own.
+  this->EdgeLengths = this->EdgeLengths.cwiseMax(1e-6 * this->EdgeLengths.mean());
+  this->RowScales.setZero(mesh.NumberOfVertices());
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    const double unit = this->EdgeLengths[v] * weightSums[v];
+    this->RowScales[v] = unit > 0.0 ? 1.0 / unit : 0.0;
+  }
+}
+
+SparseRows<double> GradientSystem::LaplacianRows(const TriangleMesh& mesh) const
+{
+  SparseRows<double> rows;
+  for (const int v : this->Gradients->ActiveVertices())
+  {
+    double sum = 0.0;
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      const double weight = this->RowScales[v] * this->EdgeWeights[d];
+      rows.Add(this->Gradients->PositionColumn(mesh.Neighbor(d)), weight);
+      sum += weight;
+    }
+    rows.Add(this->Gradients->PositionColumn(v), -sum);
+    rows.FinishRow();
+  }
+  return rows;
+}
+
+/// s_i (D - M_i delta_i): the row of D less the coefficients of M_i delta_i.
+SparseRows<double> GradientSystem::ResidualRows(const TriangleMesh& mesh) const
+{
+  const RingGradients& gradients = *this->Gradients;
+  const SparseRows<Eigen::Vector3d>& rows = gradients.Rows();
+  const SparseRows<double> laplacians = this->LaplacianRows(mesh);
+  SparseRows<double> residuals;
+  for (std::size_t a = 0; a < gradients.ActiveVertices().size(); ++a)
+  {
+    const int v = gradients.ActiveVertices()[a];
+    Eigen::Vector3d delta = Eigen::Vector3d::Zero();
+    const int active = static_cast<int>(a);
+    for (const auto* entry = laplacians.Begin(active); entry != laplacians.End(active); ++entry)
+    {
+      delta += entry->Coefficient *
+        gradients.DisplacedRest().row(gradients.Vertex(entry->Column)).transpose();
+      residuals.Add(entry->Column, entry->Coefficient);
+    }
+    const int row = gradients.Row(v);
+    for (const auto* entry = rows.Begin(row); entry != rows.End(row); ++entry)
+    {
+      residuals.Add(entry->Column, -entry->Coefficient.dot(delta));
+    }
+    residuals.FinishRow();
+  }
+  return residuals;
+}
+
+/// sum_i sum_j |M_i - M_j|^2 = sum_i M_i . 2 sum_j (M_i - M_j), as each pair
+/// occurs in both orders.
+SparseRows<Eigen::Vector3d> GradientSystem::DifferenceRows(const ExecutionContext& context) const
+{
+  const RingGradients& gradients = *this->Gradients;
+  const SparseRows<Eigen::Vector3d>& rows = gradients.Rows();
+  const int size = gradients.NumberOfColumns();
+  return MakeRows<Eigen::Vector3d>(rows.Count(), context,
+    [&](int begin, int end, SparseRows<Eigen::Vector3d>& part)
+    {
+      RowSum<Eigen::Vector3d> sum(size);
+      const auto add = [&](int row, double factor)
+      {
+        for (const auto* entry = rows.Begin(row); entry != rows.End(row); ++entry)
+        {
+          sum.Add(entry->Column, factor * entry->Coefficient);
+        }
+      };
+      for (int row = begin; row < end; ++row)
+      {
+        sum.Clear();
+        const std::vector<int>& coherent = gradients.CoherentRows()[row];
+        add(row, 2.0 * static_cast<double>(coherent.size()));
+        for (const int other : coherent)
+        {
+          add(other, -2.0);
+        }
+        for (const int column : sum.Columns())
+        {
+          part.Add(column, sum.At(column));
+        }
+        part.FinishRow();
+      }
+    });
+}
+
+void GradientSystem::Factorize(const TriangleMesh& mesh, const ExecutionContext& context)
+{
+  const RingGradients& gradients = *this->Gradients;
+  const int size = gradients.NumberOfColumns();
+  const SparseRows<Eigen::Vector3d> differences = this->DifferenceRows(context);
+  context.Report(0.1);
+  const SparseMatrix matrix = NormalMatrix(size, gradients.NumberOfUnknowns(),
+    this->ResidualRows(mesh), gradients.Rows(), differences, context);
+  context.Report(0.3);
+  Anchors anchors = Anchors::After(gradients.NumberOfUnknowns(), size);
+  anchors.Vertices.assign(size, -1);
+  this->Stiffness.setZero(size);
+  for (int column = 0; column < gradients.NumberOfPositions(); ++column)
+  {
+    const int v = gradients.Vertex(column);
+    anchors.Vertices[column] = v;
+    this->Stiffness[column] =
+      this->SoftPositions[v] / (this->EdgeLengths[v] * this->EdgeLengths[v]);
+  }
+  anchors.Stiffness = this->Stiffness;
+  this->System.Factorize(matrix, std::move(anchors), context.Part(0.3, 1.0));
+  this->Values.setZero(size, 3);
+}
+
+void GradientSystem::Solve(
+  const HandleProblem& problem, const HandleTargets& targets, const ExecutionContext& context)
+{
+  this->ReadTargets(problem, targets);
+  if (targets.IsPerVertex())
+  {
+    this->SolveColumns(problem, targets);
+    return;
+  }
+  if (this->DragFields.rows() == 0)
+  {
+    this->ComputeDragFields(problem);
+  }
+  this->BlendDragFields(targets, context);
+}
+
+void GradientSystem::ReadTargets(const HandleProblem& problem, const HandleTargets& targets)
+{
+  const RingGradients& gradients = *this->Gradients;
+  for (int column = gradients.NumberOfUnknowns(); column < gradients.NumberOfPositions(); ++column)
+  {
+    const int v = gradients.Vertex(column);
+    this->Values.row(column) =
+      HandleTarget(problem, targets, v, this->MovingHandles[v]).transpose();
+  }
+  int column = gradients.NumberOfPositions();
+  for (const int v : gradients.GivenVertices())
+  {
+    this->Values.middleRows<3>(column) =
+      HandleTransform(targets, v, this->MovingHandles[v]).transpose();
+    column += 3;
+  }
+}
+
+void GradientSystem::SolveColumns(const HandleProblem& problem, const HandleTargets& targets)
+{
+  const RingGradients& gradients = *this->Gradients;
+  for (int column = 0; column < gradients.NumberOfUnknowns(); ++column)
+  {
+    if (this->Stiffness[column] > 0.0)
+    {
+      const int v = gradients.Vertex(column);
+      this->Values.row(column) =
+        HandleTarget(problem, targets, v, this->MovingHandles[v]).transpose();
+    }
+  }
+  this->System.Solve(Field::Zero(gradients.NumberOfColumns(), 3), this->Values);
+}
+
+void GradientSystem::ComputeDragFields(const HandleProblem& problem)
+{
+  const RingGradients& gradients = *this->Gradients;
+  const int numberOfMoving = static_cast<int>(problem.Moving.size());
+  // Handle k in its rest place and all others at the origin, then handle k all
+  // in one place.
+  const Field zero = Field::Zero(gradients.NumberOfColumns(), 4 * numberOfMoving);
+  Field fields = zero;
+  for (int column = 0; column < gradients.NumberOfPositions(); ++column)
+  {
+    const int v = gradients.Vertex(column);
+    const int handle = this->MovingHandles[v];
+    if (handle < 0)
+    {
+      continue;
+    }
+    Eigen::RowVector4d target;
+    target << problem.Rest->row(v), 1.0;
+    fields.block<1, 4>(column, 4 * handle) = target;
+  }
+  int column = gradients.NumberOfPositions();
+  for (const int v : gradients.GivenVertices())
+  {
+    if (this->MovingHandles[v] >= 0)
+    {
+      fields.block<3, 3>(column, 4 * this->MovingHandles[v]).setIdentity();
+    }
+    column += 3;
+  }
+  this->System.Solve(zero, fields);
+  this->DragFields = fields.topRows(gradients.NumberOfUnknowns());
+}
+
+void GradientSystem::BlendDragFields(const HandleTargets& targets, const ExecutionContext& context)
+{
+  const RingGradients& gradients = *this->Gradients;
+  context.For(gradients.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int column = begin; column < end; ++column)
+      {
+        // The motions' identities together leave the rest shape.
+        Eigen::Vector3d position =
+          gradients.DisplacedRest().row(gradients.Vertex(column)).transpose();
+        for (std::size_t k = 0; k < targets.Motions.size(); ++k)
+        {
+          const double* phi = this->DragFields.row(column).data() + 4 * k;
+          const Eigen::Map<const Eigen::Vector3d> along(phi);
+          position +=
+            targets.Motions[k].Linear * along - along + phi[3] * targets.Motions[k].Translation;
+        }
+        this->Values.row(column) = position.transpose();
+      }
+    });
+}
+
+void GradientSystem::PullBack(const Points& rest, Points& positions) const
+{
+  const RingGradients& gradients = *this->Gradients;
+  const Points& displaced = gradients.DisplacedRest();
+  for (int column = 0; column < gradients.NumberOfUnknowns(); ++column)
+  {
+    const int v = gradients.Vertex(column);
+    // v~ = v~' + M (v - v'), section 3.3
+    positions.row(v) =
+      this->Values.row(column) + (rest.row(v) - displaced.row(v)) * this->Gradient(v).transpose();
+  }
+}
+}
