@@ -1084,6 +1084,42 @@ TEST(RotationInvariantDeformer, StaysFiniteOnDegenerateTriangles)
   }
 }
 
+TEST(RotationInvariantDeformer, ProjectsTheTargetsOfSoftPointsLikeThoseOfHeldOnes)
+{
+  const Shape shape = shapes::Bar(3, 3, 12, { 1.0, 1.0, 4.0 });
+  HandleProblem problem = MakeProblem(shape, 2);
+  for (const double weight : { 3.0, Infinity })
+  {
+    problem.SoftWeights.setConstant(shape.NumberOfVertices(), Infinity);
+    for (int v = 0; v < shape.NumberOfVertices(); ++v)
+    {
+      problem.SoftWeights[v] = problem.Handle[v] == 2 ? weight : Infinity;
+    }
+    // Where frames are projected on rotations, the size of a target does not
+    // matter.
+    Points positions[2];
+    Matrices transforms[2];
+    for (int k = 0; k < 2; ++k)
+    {
+      HandleTargets targets;
+      targets.Motions.resize(2);
+      targets.Positions = shape.Positions;
+      targets.Transforms.resize(shape.NumberOfVertices(), 9);
+      for (int v = 0; v < shape.NumberOfVertices(); ++v)
+      {
+        const double size = k == 0 ? 1.0 : 2.5;
+        MatrixAt(targets.Transforms, v) = size * Turn(0.3, 0.2, 0.1 * shape.Positions(v, 0));
+      }
+      RotationInvariantDeformer deformer(problem);
+      const DeformedSurface result = Deform(deformer, targets, FrameProjection::Rotation);
+      positions[k] = result.Positions;
+      transforms[k] = result.Transforms;
+    }
+    EXPECT_LT((transforms[0] - transforms[1]).cwiseAbs().maxCoeff(), 1e-9) << weight;
+    EXPECT_LT((positions[0] - positions[1]).cwiseAbs().maxCoeff(), 1e-9) << weight;
+  }
+}
+
 TEST(RotationInvariantDeformer, StopsOnRequestAndReportsProgressThatNeverFalls)
 {
   const Shape shape = shapes::RealMesh("elephant");

@@ -75,15 +75,15 @@ void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
     result.Positions.row(held.Vertex) =
       HandleTarget(this->Problem, targets, held.Vertex, held.Handle).transpose();
   }
-  const bool isDirect =
-    !this->PreservesVolume() && this->DeformDirectly(targets, result.Positions, context);
+  const bool isDirect = !this->PreservesVolume() &&
+    this->DeformDirectly(targets, result.Positions, context.Part(0.0, 0.4));
   if (!isDirect || wantTransforms)
   {
     if (this->Transforms.rows() == 0)
     {
       this->Transforms = Identities(this->Problem.Mesh->NumberOfVertices());
     }
-    this->ComputeTransforms(targets, context);
+    this->ComputeTransforms(targets, context.Part(0.0, 0.4));
     context.Report(0.4);
   }
   if (!isDirect)
@@ -203,7 +203,7 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
         rightHandSide.row(i) = sum;
       }
     });
-  const Eigen::MatrixXd solution = system.Solve(rightHandSide);
+  const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide);
   for (int i = 0; i < system.NumberOfUnknowns(); ++i)
   {
     positions.row(system.Vertex(i)) = solution.row(i);
@@ -250,7 +250,7 @@ void FrameDeformer::CloseVolumes(Points& positions)
   {
     rightHandSide.row(i) = gradient.row(system.Vertex(i));
   }
-  const Eigen::MatrixXd solution = system.Solve(rightHandSide);
+  const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide);
   Points direction = Points::Zero(positions.rows(), 3);
   for (int i = 0; i < system.NumberOfUnknowns(); ++i)
   {

@@ -77,7 +77,8 @@ void RotationInvariantDeformer::ComputeTransforms(
     return;
   }
 
-  // R - I is harmonic with the values that the held vertices give.
+  // R - I is harmonic with the values that the held vertices give, and near those
+  // that softly held ones give, projected alike.
   Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(frames.NumberOfUnknowns(), 9);
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
   const Eigen::Map<const Eigen::Matrix<double, 1, 9>> identityRow(identity.data());
@@ -93,11 +94,11 @@ void RotationInvariantDeformer::ComputeTransforms(
     }
     if (frames.MovingHandle(i) >= 0)
     {
-      rightHandSide.row(i) += 0.5 * frames.SquaredSoftWeight(i) *
-        (targets.Transforms.row(frames.Vertex(i)) - identityRow);
+      rightHandSide.row(i) +=
+        0.5 * frames.SquaredSoftWeight(i) * (this->Transforms.row(frames.Vertex(i)) - identityRow);
     }
   }
-  const Eigen::MatrixXd solution = frames.Solve(rightHandSide);
+  const Eigen::Map<const Eigen::MatrixXd> solution = frames.Solve(rightHandSide);
   context.For(frames.NumberOfUnknowns(),
     [&](int begin, int end)
     {
@@ -211,7 +212,7 @@ void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& contex
         }
       }
     });
-  const Eigen::MatrixXd phi = system.Solve(rightHandSide);
+  const Eigen::Map<const Eigen::MatrixXd> phi = system.Solve(rightHandSide);
   this->DragFields.resize(numberOfUnknowns, 3 + 4 * numberOfMoving);
   for (int i = 0; i < numberOfUnknowns; ++i)
   {

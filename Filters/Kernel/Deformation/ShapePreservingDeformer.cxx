@@ -279,7 +279,7 @@ Field ShapePreservingDeformer::Iterate(Field eta, const ExecutionContext& contex
   std::vector<Eigen::Triplet<double>> entries;
   for (; this->Iterations < this->MaximumIterations && !this->Converged; ++this->Iterations)
   {
-    context.Report(0.5);
+    context.Report(static_cast<double>(this->Iterations) / this->MaximumIterations);
     entries.clear();
     Field rightHandSide = softTargets;
     for (const HandleLaplacian::Triangle& triangle : this->Triangles)

@@ -229,8 +229,8 @@ TriangleGradientMorph::TriangleGradientMorph(const KeyFrames& keys, const Execut
   }
   this->RotationVectors = KeyInterpolation(keys.Parameters, std::move(vectors));
   this->Corners = KeyInterpolation(keys.Parameters, std::move(corners));
-  this->Stitching =
-    TriangleStitching(mesh.GetTriangles(), std::move(weights), mesh.Grounded(), context);
+  this->Stitching = TriangleStitching(mesh.GetTriangles(), std::move(weights), mesh.Grounded(),
+    context.Part(numberOfKeys / (numberOfKeys + 1.0), 1.0));
 }
 
 Points TriangleGradientMorph::Evaluate(double t, const ExecutionContext& context)
