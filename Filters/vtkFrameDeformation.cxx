@@ -50,7 +50,7 @@ public:
       if (!entry.Volumes)
       {
         entry.Volumes =
-          std::make_shared<const cartan::LocalVolumes>(*problem.Mesh, *problem.Rest, context);
+          std::make_shared<const cartan::LocalVolumes>(problem.Mesh, *problem.Rest, context);
       }
       const Eigen::VectorXd measured = entry.Volumes->Measure(positions, context);
       for (Eigen::Index v = 0; v < positions.rows(); ++v)

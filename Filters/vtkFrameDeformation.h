@@ -7,8 +7,9 @@
  * the surface together from the changed frames: the weights of the position
  * system and the preservation of volume.
  *
- * Volume is preserved in components that are closed and oriented outwards;
- * others get a warning and no correction. The thickness of the body is measured
+ * Volume is preserved in components that are closed and oriented outwards, and
+ * in cavities inside of them, whose walls are oriented inwards; others get a
+ * warning and no correction. The thickness of the body is measured
  * once per surface, with rays, and kept between motions.
  *
  * Arrays on request:

@@ -147,8 +147,9 @@ public:
   ///@{
   /**
    * Closes the volume of each component on that between the key frames, by the
-   * smoothest displacement that does. Components that are open or inside out in
-   * a key frame are left alone with a warning. Default: off.
+   * smoothest displacement that does. Components that are open, enclose
+   * nothing, or are turned inside out against the first one in a key frame are
+   * left alone with a warning. Default: off.
    */
   vtkSetMacro(CloseVolume, bool);
   vtkGetMacro(CloseVolume, bool);

@@ -36,7 +36,8 @@ public:
       !IsEqual(this->Reference, pair.Reference))
     {
       this->Volumes.reset();
-      this->Volumes = std::make_unique<cartan::LocalVolumes>(pair.Mesh, pair.Reference, context);
+      this->Volumes = std::make_unique<cartan::LocalVolumes>(
+        std::make_shared<const cartan::TriangleMesh>(pair.Mesh), pair.Reference, context);
       this->Triangles = pair.Mesh.GetTriangles();
       this->Reference = pair.Reference;
     }

@@ -3,7 +3,7 @@
 
 #include "TestShapes.h"
 
-#include "Kernel/Measure/VolumePreservation.h"
+#include "Kernel/Measure/VolumeModel.h"
 
 namespace shapes
 {

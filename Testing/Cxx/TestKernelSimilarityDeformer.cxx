@@ -4,6 +4,7 @@
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
 #include "Kernel/Deformation/LaplacianDeformer.h"
+#include "Kernel/Differential/RotationFit.h"
 #include "Kernel/Measure/Measures.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Measure/VolumePreservation.h"
+#include "Kernel/Measure/VolumeModel.h"
 
 #include "AllTriangles.h"
 #include "Kernel/Deformation/FrameDeformer.h"
 #include "Kernel/Deformation/RotationInvariantDeformer.h"
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/ComponentVolumes.h"
+#include "Kernel/Measure/VolumeClosing.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 #include "TestShapes.h"

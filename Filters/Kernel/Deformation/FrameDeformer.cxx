@@ -2,10 +2,9 @@
 #include "Deformation/FrameDeformer.h"
 
 #include "Differential/Curvature.h"
-#include "Measure/Measures.h"
+#include "Measure/VolumeClosing.h"
 #include "Mesh/Geometry.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace cartan
@@ -240,43 +239,24 @@ void FrameDeformer::ScaleFrames(
 
 void FrameDeformer::CloseVolumes(Points& positions)
 {
-  const TriangleMesh& mesh = *this->Problem.Mesh;
   const HandleLaplacian& system = *this->Positions;
-  // The Lagrange step: among all changes of one volume by the same amount,
-  // A^-1 grad V costs the position energy least.
-  const Points gradient = VolumeGradient(mesh, positions);
-  Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
-  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+  const auto solve = [&system](const Points& gradient)
   {
-    rightHandSide.row(i) = gradient.row(system.Vertex(i));
-  }
-  const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide);
-  Points direction = Points::Zero(positions.rows(), 3);
-  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
-  {
-    direction.row(system.Vertex(i)) = solution.row(i);
-  }
-  const std::vector<double> steps = VolumeClosingSteps(
-    mesh, positions, direction, this->Model->EnclosesVolume, this->Model->Volumes);
-  for (int i = 0; i < system.NumberOfUnknowns(); ++i)
-  {
-    const int v = system.Vertex(i);
-    positions.row(v) += steps[mesh.Component(v)] * direction.row(v);
-  }
-
-  IdSample notClosed;
-  if (std::find(steps.begin(), steps.end(), 0.0) != steps.end())
-  {
-    const std::vector<ComponentVolume> components = MeasureComponents(mesh, positions);
-    for (std::size_t c = 0; c < steps.size(); ++c)
+    Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
+    for (int i = 0; i < system.NumberOfUnknowns(); ++i)
     {
-      const double rest = this->Model->Volumes[c];
-      if (this->Model->EnclosesVolume[c] && std::abs(components[c].Volume - rest) > 1e-9 * rest)
-      {
-        notClosed.Add(static_cast<long long>(c));
-      }
+      rightHandSide.row(i) = gradient.row(system.Vertex(i));
     }
-  }
+    const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide);
+    Points direction = Points::Zero(gradient.rows(), 3);
+    for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+    {
+      direction.row(system.Vertex(i)) = solution.row(i);
+    }
+    return direction;
+  };
+  const IdSample notClosed = cartan::CloseVolumes(
+    *this->Problem.Mesh, this->Model->EnclosesVolume, this->Model->Volumes, solve, positions);
   if (!notClosed.IsEmpty())
   {
     this->Warning += (this->Warning.empty() ? "" : " ");

@@ -3,7 +3,7 @@
 
 #include "Deformation/HandleLaplacian.h"
 #include "Deformation/SurfaceDeformer.h"
-#include "Measure/VolumePreservation.h"
+#include "Measure/VolumeModel.h"
 
 namespace cartan
 {

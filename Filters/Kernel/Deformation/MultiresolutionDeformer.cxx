@@ -2,7 +2,7 @@
 #include "Deformation/MultiresolutionDeformer.h"
 
 #include "Algebra/Rotation.h"
-#include "Measure/Measures.h"
+#include "Differential/RotationFit.h"
 
 namespace cartan
 {

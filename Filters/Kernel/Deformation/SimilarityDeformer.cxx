@@ -3,7 +3,7 @@
 
 #include "Algebra/Rotation.h"
 #include "Differential/Laplacian.h"
-#include "Measure/Measures.h"
+#include "Differential/RotationFit.h"
 
 #include <Eigen/LU>
 

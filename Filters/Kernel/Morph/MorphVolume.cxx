@@ -2,11 +2,10 @@
 #include "Morph/MorphVolume.h"
 
 #include "Differential/Laplacian.h"
-#include "Measure/Measures.h"
-#include "Measure/VolumePreservation.h"
+#include "Measure/ComponentVolumes.h"
+#include "Measure/VolumeClosing.h"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace cartan
 {
@@ -21,9 +20,10 @@ MorphVolume::MorphVolume(const KeyFrames& keys, const ExecutionContext& context)
     const std::vector<ComponentVolume> components = MeasureComponents(mesh, keys.Positions[k]);
     for (std::size_t c = 0; c < components.size(); ++c)
     {
-      volumes(static_cast<Eigen::Index>(c), k) = components[c].Volume;
-      this->TakesPart[c] =
-        this->TakesPart[c] && components[c].IsClosed && components[c].Volume > 0.0;
+      const auto row = static_cast<Eigen::Index>(c);
+      volumes(row, k) = components[c].Volume;
+      this->TakesPart[c] = this->TakesPart[c] && components[c].EnclosesVolume() &&
+        volumes(row, k) * volumes(row, 0) > 0.0;
     }
   }
   this->Volumes = KeyInterpolation(keys.Parameters, std::move(volumes));
@@ -38,8 +38,8 @@ MorphVolume::MorphVolume(const KeyFrames& keys, const ExecutionContext& context)
   if (!left.IsEmpty())
   {
     this->Warning = "The volume of " + left.Describe("component", "components") +
-      " is not closed, because it is open or inside out in a key frame: close its holes, or "
-      "orient it with the Surface Normals filter.";
+      " is not closed, because in a key frame it is open, encloses nothing, or is turned inside "
+      "out against the first one: close its holes (Fill Holes).";
   }
   this->Laplacian.Factorize(
     cartan::Laplacian(mesh, Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges())), mesh.Grounded(),
@@ -51,28 +51,13 @@ std::string MorphVolume::Close(double t, Points& positions) const
   const TriangleMesh& mesh = *this->Mesh;
   const Eigen::VectorXd interpolated = this->Volumes.Evaluate(t);
   const std::vector<double> volumes(interpolated.data(), interpolated.data() + interpolated.size());
-  Field solution = Field::Zero(mesh.NumberOfVertices(), 3);
-  this->Laplacian.Solve(VolumeGradient(mesh, positions), solution);
-  const Points direction = solution;
-  const std::vector<double> steps =
-    VolumeClosingSteps(mesh, positions, direction, this->TakesPart, volumes);
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  const auto solve = [this](const Points& gradient)
   {
-    if (mesh.IsUsed(v))
-    {
-      positions.row(v) += steps[mesh.Component(v)] * direction.row(v);
-    }
-  }
-  IdSample notClosed;
-  const std::vector<ComponentVolume> components = MeasureComponents(mesh, positions);
-  for (std::size_t c = 0; c < steps.size(); ++c)
-  {
-    if (this->TakesPart[c] &&
-      !(std::abs(components[c].Volume - volumes[c]) <= 1e-9 * std::abs(volumes[c])))
-    {
-      notClosed.Add(static_cast<long long>(c));
-    }
-  }
+    Field solution = Field::Zero(gradient.rows(), 3);
+    this->Laplacian.Solve(gradient, solution);
+    return Points(solution);
+  };
+  const IdSample notClosed = CloseVolumes(mesh, this->TakesPart, volumes, solve, positions);
   return notClosed.IsEmpty() ? std::string()
                              : "The volume of " + notClosed.Describe("component", "components") +
       " at the parameter " + std::to_string(t) + " could not be closed on those of the key frames.";

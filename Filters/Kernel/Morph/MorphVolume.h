@@ -11,8 +11,8 @@ namespace cartan
 class MorphVolume
 {
 public:
-  /// Components take part that are closed and oriented outwards in all key
-  /// frames.
+  /// Components take part that enclose volume in all key frames, everywhere of the
+  /// same sign: the wall of a cavity, whose volume is negative, does too.
   explicit MorphVolume(const KeyFrames& keys, const ExecutionContext& context = {});
 
   /// Why some components do not take part, in a sentence; empty if all do.

@@ -2,53 +2,14 @@
 #include "Morph/RigidPlacement.h"
 
 #include "Algebra/Rotation.h"
-#include "Measure/Measures.h"
+#include "Differential/RotationFit.h"
+#include "Measure/Areas.h"
+#include "Measure/ComponentVolumes.h"
 
 #include <Eigen/SVD>
 
 namespace cartan
 {
-namespace
-{
-Points WeightedCenters(
-  const TriangleMesh& mesh, const Points& positions, const Eigen::VectorXd& weights)
-{
-  Points centers = Points::Zero(mesh.NumberOfComponents(), 3);
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    if (mesh.IsUsed(v))
-    {
-      centers.row(mesh.Component(v)) += weights[v] * positions.row(v);
-    }
-  }
-  return centers;
-}
-
-/// The rotation of each component that best takes it to `to` about the centers:
-/// the orthogonal factor of sum w (q - center q) (p - center p)^T (Kabsch, A
-/// solution for the best rotation to relate two sets of vectors, 1976).
-std::vector<Eigen::Matrix3d> BestRotations(const TriangleMesh& mesh, const Points& from,
-  const Points& fromCenters, const Points& to, const Points& toCenters,
-  const Eigen::VectorXd& weights)
-{
-  std::vector<Eigen::Matrix3d> rotations(mesh.NumberOfComponents(), Eigen::Matrix3d::Zero());
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    if (mesh.IsUsed(v) && weights[v] > 0.0)
-    {
-      const int c = mesh.Component(v);
-      rotations[c] += weights[v] * (to.row(v) - toCenters.row(c)).transpose() *
-        (from.row(v) - fromCenters.row(c));
-    }
-  }
-  for (Eigen::Matrix3d& rotation : rotations)
-  {
-    rotation = ProjectOnRotations(rotation);
-  }
-  return rotations;
-}
-}
-
 Eigen::VectorXd AreaWeights(const KeyFrames& keys, const ExecutionContext& context)
 {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(keys.Mesh->NumberOfVertices());
@@ -127,14 +88,15 @@ RigidPlacement::RigidPlacement(const KeyFrames& keys, Eigen::VectorXd weights)
   Field paths(3 * components, count);
   for (int k = 0; k < count; ++k)
   {
-    this->Centers.push_back(WeightedCenters(mesh, this->Keys.Positions[k], this->Weights));
+    this->Centers.push_back(ComponentCenters(mesh, this->Keys.Positions[k], this->Weights));
     paths.col(k) = Eigen::Map<const Eigen::VectorXd>(this->Centers[k].data(), 3 * components);
   }
   this->CenterPaths = KeyInterpolation(this->Keys.Parameters, std::move(paths));
   for (int k = 0; k + 1 < count; ++k)
   {
-    const std::vector<Eigen::Matrix3d> rotations = BestRotations(mesh, this->Keys.Positions[k],
-      this->Centers[k], this->Keys.Positions[k + 1], this->Centers[k + 1], this->Weights);
+    const std::vector<Eigen::Matrix3d> rotations =
+      FitComponentRotations(mesh, this->Keys.Positions[k], this->Centers[k],
+        this->Keys.Positions[k + 1], this->Centers[k + 1], this->Weights);
     Points turns(components, 3);
     for (int c = 0; c < components; ++c)
     {
@@ -149,10 +111,10 @@ void RigidPlacement::Place(double t, Points& positions) const
   const TriangleMesh& mesh = *this->Keys.Mesh;
   const auto [k, part] = PlaceBetweenKeys(t, this->Keys.Parameters);
 
-  const Points own = WeightedCenters(mesh, positions, this->Weights);
+  const Points own = ComponentCenters(mesh, positions, this->Weights);
   const auto rotationsTo = [&](int key)
   {
-    return BestRotations(
+    return FitComponentRotations(
       mesh, positions, own, this->Keys.Positions[key], this->Centers[key], this->Weights);
   };
   std::vector<Eigen::Matrix3d> rotations = rotationsTo(k);

@@ -31,7 +31,9 @@ struct VolumeModel
   Points Offsets;
   /// h of Eq. 13 at rest: #V.
   Eigen::VectorXd ColumnHeight;
-  /// Per component: whether it is closed and oriented outwards, and its volume.
+  /// Per component: whether it takes part, and its volume, negative for the wall
+  /// of a cavity. Those take part that enclose volume, but for outermost ones that
+  /// are oriented inside out and what is inside of those.
   std::vector<char> EnclosesVolume;
   std::vector<double> Volumes;
   /// Why some components do not take part; empty if all do.
@@ -63,15 +65,4 @@ double ColumnDepth(double localDepth, double k1, double k2);
 /// of body of depth phi under a surface with principal curvatures k1, k2,
 /// h = phi - (k1 + k2) phi^2 / 2 + k1 k2 phi^3 / 3.
 double ColumnHeight(double phi, double k1, double k2);
-
-/// (d Volume / d x_i) for each vertex: a third of half the one-ring's area
-/// vectors: #V x 3.
-Points VolumeGradient(const TriangleMesh& mesh, const Points& points);
-
-/// The amounts q, one per component, so that points + q * direction enclose
-/// `volumes` in the components where `takesPart` is set; 0 in the others. The
-/// volume is a cubic in q, whose root nearest to 0 is taken. Components whose
-/// direction changes no volume, or cannot reach the given one, keep 0.
-std::vector<double> VolumeClosingSteps(const TriangleMesh& mesh, const Points& points,
-  const Points& direction, const std::vector<char>& takesPart, const std::vector<double>& volumes);
 }

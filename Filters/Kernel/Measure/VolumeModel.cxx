@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Measure/VolumePreservation.h"
+#include "Measure/VolumeModel.h"
 
 #include "Algebra/ConstrainedSolver.h"
 #include "Base/Constants.h"
 #include "Differential/Curvature.h"
 #include "Differential/Laplacian.h"
-#include "Measure/Measures.h"
+#include "Measure/ComponentVolumes.h"
 #include "Mesh/Geometry.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace cartan
@@ -106,51 +105,78 @@ Points SmoothedCenters(const TriangleMesh& mesh, const Points& points,
   return smoothed;
 }
 
+void AddSentence(std::string& text, const std::string& sentence)
+{
+  text += (text.empty() ? "" : " ") + sentence;
+}
+
+/// Flipping all triangles helps only where all are the wrong way round.
+std::string FlipAdvice(bool isAnyRight)
+{
+  return isAnyRight ? "flip the triangles of these components alone (Surface Normals with Flip "
+                      "Normals on and Splitting off)."
+                    : "flip the triangles (Surface Normals with Flip Normals on and Splitting "
+                      "off).";
+}
+
 /// Decides which components take part and says why others do not.
 void FindEnclosingComponents(const TriangleMesh& mesh, const Points& points, VolumeModel& model)
 {
+  const std::vector<ComponentVolume> components = MeasureComponents(mesh, points);
+  const std::vector<int> enclosing = EnclosingComponents(mesh, points, components);
   IdSample open;
+  IdSample flat;
   IdSample inverted;
-  for (const ComponentVolume& component : MeasureComponents(mesh, points))
+  bool isAnyRight = false;
+  for (std::size_t c = 0; c < components.size(); ++c)
   {
-    const auto id = static_cast<long long>(model.Volumes.size());
-    model.Volumes.push_back(component.Volume);
-    model.EnclosesVolume.push_back(component.IsClosed && component.Volume > 0.0);
-    if (!component.IsClosed)
+    const auto id = static_cast<long long>(c);
+    // The wall of a cavity has a negative volume: the outermost component decides.
+    // Components that intersect each other may go round in a circle.
+    std::size_t outermost = c;
+    for (std::size_t step = 0; step < components.size() && enclosing[outermost] >= 0; ++step)
     {
-      open.Add(id);
+      outermost = static_cast<std::size_t>(enclosing[outermost]);
     }
-    else if (!(component.Volume > 0.0))
+    const bool isRight = components[c].EnclosesVolume() && components[outermost].Volume > 0.0;
+    model.Volumes.push_back(components[c].Volume);
+    model.EnclosesVolume.push_back(isRight);
+    isAnyRight = isAnyRight || isRight;
+    if (!isRight)
     {
-      inverted.Add(id);
+      (!components[c].IsClosed ? open : components[c].EnclosesVolume() ? inverted : flat).Add(id);
     }
   }
   if (!open.IsEmpty())
   {
-    model.Warning = "No volume is preserved in " +
-      open.Describe("open component", "open components") + ": close the surface (Fill Holes).";
+    AddSentence(model.Warning,
+      "No volume is preserved in " + open.Describe("open component", "open components") +
+        ": close the surface (Fill Holes).");
+  }
+  if (!flat.IsEmpty())
+  {
+    AddSentence(model.Warning,
+      "No volume is preserved in " + flat.Describe("component", "components") +
+        " that enclose none, as a sheet with two sides.");
   }
   if (!inverted.IsEmpty())
   {
-    model.Warning += (model.Warning.empty() ? "" : " ");
-    model.Warning += "No volume is preserved in " + inverted.Describe("component", "components") +
-      " that are oriented inside out: flip the triangles (Surface Normals, Flip Normals).";
+    AddSentence(model.Warning,
+      "No volume is preserved in " + inverted.Describe("component", "components") +
+        " that are oriented inside out: " + FlipAdvice(isAnyRight));
   }
-}
 }
 
-VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
-  const RayCaster& castRay, const ExecutionContext& context)
+bool IsAnyEnclosing(const VolumeModel& model)
 {
-  VolumeModel model;
-  FindEnclosingComponents(mesh, points, model);
-  if (std::none_of(
-        model.EnclosesVolume.begin(), model.EnclosesVolume.end(), [](char e) { return e; }))
-  {
-    return model;
-  }
+  return std::any_of(
+    model.EnclosesVolume.begin(), model.EnclosesVolume.end(), [](char e) { return e != 0; });
+}
+
+void MeasureDepths(const TriangleMesh& mesh, const Points& points, const Points& normals,
+  const RayCaster& castRay, const ExecutionContext& context, VolumeModel& model)
+{
   const int numberOfVertices = mesh.NumberOfVertices();
-  const Points normals = VertexNormals(mesh, points, context);
   const Points areaVectors = TriangleAreaVectors(points, mesh.GetTriangles(), context);
   model.LocalDepth = Eigen::VectorXd::Zero(numberOfVertices);
   model.IsMeasured.assign(numberOfVertices, 0);
@@ -181,9 +207,13 @@ VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
       });
     context.Report(0.8 * (part + 1) / parts);
   }
-  // A component none of whose rays hit has no depth to fill in from.
+}
+
+/// A component none of whose rays hit has no depth to fill in from.
+void LeaveOutUnmeasured(const TriangleMesh& mesh, VolumeModel& model)
+{
   std::vector<char> isAnyMeasured(mesh.NumberOfComponents(), 0);
-  for (int v = 0; v < numberOfVertices; ++v)
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     if (model.IsMeasured[v])
     {
@@ -201,12 +231,46 @@ VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
   }
   if (!unmeasured.IsEmpty())
   {
-    model.Warning += (model.Warning.empty() ? "" : " ");
-    model.Warning += "No volume is preserved in " + unmeasured.Describe("component", "components") +
-      " whose inside no ray has found: the surface is folded flat, or crosses itself.";
+    AddSentence(model.Warning,
+      "No volume is preserved in " + unmeasured.Describe("component", "components") +
+        " whose inside no ray has found: the surface is folded flat, or crosses itself.");
   }
-  if (std::none_of(
-        model.EnclosesVolume.begin(), model.EnclosesVolume.end(), [](char e) { return e; }))
+}
+
+/// The way from the middle of the body to each vertex.
+Points OffsetsFromMiddle(const TriangleMesh& mesh, const Points& points, const Points& normals,
+  const SparseMatrix& laplacian, const VolumeModel& model)
+{
+  Points centers = points;
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    centers.row(v) -= 0.5 * model.LocalDepth[v] * normals.row(v);
+  }
+  Points offsets = points - SmoothedCenters(mesh, points, laplacian, centers, model);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (!mesh.IsUsed(v) || !model.EnclosesVolume[mesh.Component(v)])
+    {
+      offsets.row(v).setZero();
+    }
+  }
+  return offsets;
+}
+}
+
+VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
+  const RayCaster& castRay, const ExecutionContext& context)
+{
+  VolumeModel model;
+  FindEnclosingComponents(mesh, points, model);
+  if (!IsAnyEnclosing(model))
+  {
+    return model;
+  }
+  const Points normals = VertexNormals(mesh, points, context);
+  MeasureDepths(mesh, points, normals, castRay, context, model);
+  LeaveOutUnmeasured(mesh, model);
+  if (!IsAnyEnclosing(model))
   {
     model.LocalDepth.resize(0);
     return model;
@@ -214,24 +278,11 @@ VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
   const SparseMatrix laplacian =
     Laplacian(mesh, EdgeWeights(mesh, points, LaplacianWeights::Cotangent, context));
   FillDepths(mesh, laplacian, model);
-
-  Points centers = points;
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
-    centers.row(v) -= 0.5 * model.LocalDepth[v] * normals.row(v);
-  }
-  model.Offsets = points - SmoothedCenters(mesh, points, laplacian, centers, model);
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
-    if (!mesh.IsUsed(v) || !model.EnclosesVolume[mesh.Component(v)])
-    {
-      model.Offsets.row(v).setZero();
-    }
-  }
+  model.Offsets = OffsetsFromMiddle(mesh, points, normals, laplacian, model);
 
   const Curvatures curvatures = CurvaturesFromNormals(mesh, points, normals, context);
-  model.ColumnHeight.resize(numberOfVertices);
-  for (int v = 0; v < numberOfVertices; ++v)
+  model.ColumnHeight.resize(mesh.NumberOfVertices());
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     const double k1 = curvatures.Maximum[v];
     const double k2 = curvatures.Minimum[v];
@@ -257,87 +308,5 @@ double ColumnDepth(double localDepth, double k1, double k2)
 double ColumnHeight(double phi, double k1, double k2)
 {
   return phi * (1.0 + phi * (-0.5 * (k1 + k2) + phi * k1 * k2 / 3.0));
-}
-
-Points VolumeGradient(const TriangleMesh& mesh, const Points& points)
-{
-  // Of sum a . (b x c) / 6; on a closed surface its derivative by a vertex is a
-  // sixth of the sum of the adjacent triangles' doubled area vectors.
-  const Points areaVectors = TriangleAreaVectors(points, mesh.GetTriangles());
-  Points gradient = Points::Zero(points.rows(), 3);
-  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    for (int corner = 0; corner < 3; ++corner)
-    {
-      gradient.row(mesh.GetTriangles()(t, corner)) += areaVectors.row(t) / 6.0;
-    }
-  }
-  return gradient;
-}
-
-std::vector<double> VolumeClosingSteps(const TriangleMesh& mesh, const Points& points,
-  const Points& direction, const std::vector<char>& takesPart, const std::vector<double>& volumes)
-{
-  // A vertex of each component as its origin, which keeps the digits of one that
-  // has gone far.
-  std::vector<Eigen::Vector3d> origins(mesh.NumberOfComponents(), Eigen::Vector3d::Zero());
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    if (mesh.IsUsed(v))
-    {
-      origins[mesh.Component(v)] = points.row(v).transpose();
-    }
-  }
-  // Volume(x + q u) = c0 + c1 q + c2 q^2 + c3 q^3, per component.
-  std::vector<std::array<double, 4>> cubics(mesh.NumberOfComponents(), { 0.0, 0.0, 0.0, 0.0 });
-  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    const int component = mesh.Component(mesh.GetTriangles()(t, 0));
-    Eigen::Matrix3d x;
-    Eigen::Matrix3d u;
-    for (int corner = 0; corner < 3; ++corner)
-    {
-      x.col(corner) = points.row(mesh.GetTriangles()(t, corner)).transpose() - origins[component];
-      u.col(corner) = direction.row(mesh.GetTriangles()(t, corner)).transpose();
-    }
-    auto& cubic = cubics[component];
-    const auto determinant = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                               const Eigen::Vector3d& c) { return a.dot(b.cross(c)) / 6.0; };
-    cubic[0] += determinant(x.col(0), x.col(1), x.col(2));
-    cubic[3] += determinant(u.col(0), u.col(1), u.col(2));
-    for (int corner = 0; corner < 3; ++corner)
-    {
-      const int next = (corner + 1) % 3;
-      const int last = (corner + 2) % 3;
-      cubic[1] += determinant(u.col(corner), x.col(next), x.col(last));
-      cubic[2] += determinant(x.col(corner), u.col(next), u.col(last));
-    }
-  }
-  std::vector<double> steps(mesh.NumberOfComponents(), 0.0);
-  for (int c = 0; c < mesh.NumberOfComponents(); ++c)
-  {
-    const auto& cubic = cubics[c];
-    if (!takesPart[c] || cubic[1] == 0.0)
-    {
-      continue;
-    }
-    double q = 0.0;
-    // Newton from 0 finds the nearest root as long as the volume grows with q,
-    // which the gradient direction makes sure of near 0.
-    for (int round = 0; round < 50; ++round)
-    {
-      const double error = cubic[0] + q * (cubic[1] + q * (cubic[2] + q * cubic[3])) - volumes[c];
-      const double slope = cubic[1] + q * (2.0 * cubic[2] + q * 3.0 * cubic[3]);
-      if (std::abs(error) <= 1e-15 * std::abs(volumes[c]) || slope == 0.0)
-      {
-        break;
-      }
-      q -= error / slope;
-    }
-    const double remaining =
-      std::abs(cubic[0] + q * (cubic[1] + q * (cubic[2] + q * cubic[3])) - volumes[c]);
-    steps[c] = remaining <= 1e-9 * std::abs(volumes[c]) ? q : 0.0;
-  }
-  return steps;
 }
 }

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/ExecutionContext.h"
+#include "Mesh/TriangleMesh.h"
+
+namespace cartan
+{
+struct EdgeLengthChange
+{
+  /// Per vertex the mean of l' / l over its edges; 1 at unused vertices, NaN
+  /// where every edge has length zero in the reference: #V.
+  Eigen::VectorXd VertexRatio;
+  /// Over all edges, sqrt(mean of (l' / l - 1)^2) and the maximum of |l' / l - 1|.
+  double RootMeanSquare = 0.0;
+  double Maximum = 0.0;
+  /// Edges of length zero in the reference, by their smaller end point. They
+  /// have no relative change and are left out.
+  IdSample ZeroLength;
+};
+
+EdgeLengthChange CompareEdgeLengths(const TriangleMesh& mesh, const Points& reference,
+  const Points& current, const ExecutionContext& context = {});
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Measure/LocalVolumes.h"
+
+#include "Differential/Laplacian.h"
+#include "Differential/RotationFit.h"
+#include "Measure/ComponentVolumes.h"
+#include "Mesh/Geometry.h"
+
+#include <limits>
+#include <utility>
+
+namespace cartan
+{
+namespace
+{
+constexpr double Undefined = std::numeric_limits<double>::quiet_NaN();
+
+Eigen::Vector3d AreaVector(
+  const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
+{
+  return 0.5 * (b - a).cross(c - a);
+}
+}
+
+LocalVolumes::LocalVolumes(std::shared_ptr<const TriangleMesh> sharedMesh, const Points& reference,
+  const ExecutionContext& context)
+  : Mesh(std::move(sharedMesh))
+  , Positions(reference)
+  , EdgeWeight(EdgeWeights(*this->Mesh, reference, LaplacianWeights::Cotangent, context))
+  , Stiffness(MixedVoronoiAreas(*this->Mesh, reference, context))
+  , Centers(reference)
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  const std::vector<ComponentVolume> components = MeasureComponents(mesh, reference);
+  std::vector<double> smoothing;
+  for (const ComponentVolume& component : components)
+  {
+    const bool enclosesVolume = component.EnclosesVolume();
+    const double length = enclosesVolume ? 6.0 * component.Volume / component.Area : 1.0;
+    this->EnclosesVolume.push_back(enclosesVolume);
+    smoothing.push_back(length * length);
+  }
+  std::vector<char> isFixed(mesh.NumberOfVertices(), 1);
+  bool isAnyFree = false;
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (mesh.IsUsed(v))
+    {
+      this->Stiffness[v] /= smoothing[mesh.Component(v)];
+      isFixed[v] = !this->EnclosesVolume[mesh.Component(v)];
+      isAnyFree = isAnyFree || !isFixed[v];
+    }
+  }
+  if (isAnyFree)
+  {
+    this->Solver.Factorize(
+      Laplacian(mesh, this->EdgeWeight), isFixed, this->Stiffness, {}, context);
+    Field centers = reference;
+    this->Solver.Solve(Field(this->Stiffness.asDiagonal() * reference), centers);
+    this->Centers = centers;
+  }
+  this->Reference = this->Sum(reference, this->Centers);
+  context.Report(1.0);
+}
+
+Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionContext& context) const
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  Field centers = current;
+  if (!this->Solver.GetFree().empty())
+  {
+    const Matrices rotations = FitRotations(mesh, this->Positions, current, context);
+    Field rightHandSide(current.rows(), 3);
+    context.For(mesh.NumberOfVertices(),
+      [&](int begin, int end)
+      {
+        for (int v = begin; v < end; ++v)
+        {
+          const Eigen::Vector3d offset =
+            (this->Positions.row(v) - this->Centers.row(v)).transpose();
+          Eigen::Vector3d sum =
+            this->Stiffness[v] * (current.row(v).transpose() - MatrixAt(rotations, v) * offset);
+          for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+          {
+            const int w = mesh.Neighbor(d);
+            const Eigen::Vector3d difference =
+              (this->Centers.row(v) - this->Centers.row(w)).transpose();
+            sum += 0.5 * this->EdgeWeight[d] *
+              (MatrixAt(rotations, v) * difference + MatrixAt(rotations, w) * difference);
+          }
+          rightHandSide.row(v) = sum.transpose();
+        }
+      });
+    this->Solver.Solve(rightHandSide, centers);
+  }
+  context.Report(1.0);
+  return this->Sum(current, centers);
+}
+
+Eigen::VectorXd LocalVolumes::Sum(const Points& points, const Points& centers) const
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  std::vector<double> rest(mesh.NumberOfComponents(), 0.0);
+  const std::vector<ComponentVolume> inner = MeasureComponents(mesh, centers);
+  const std::vector<ComponentVolume> outer = MeasureComponents(mesh, points);
+  for (std::size_t component = 0; component < rest.size(); ++component)
+  {
+    if (outer[component].Area > 0.0)
+    {
+      rest[component] = inner[component].Volume / outer[component].Area;
+    }
+  }
+  Eigen::VectorXd volumes = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
+  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    Eigen::Vector3d p[3];
+    Eigen::Vector3d c[3];
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      p[corner] = points.row(mesh.GetTriangles()(t, corner)).transpose();
+      c[corner] = centers.row(mesh.GetTriangles()(t, corner)).transpose();
+      offset += (p[corner] - c[corner]) / 3.0;
+    }
+    const Eigen::Vector3d top = AreaVector(p[0], p[1], p[2]);
+    const Eigen::Vector3d bottom = AreaVector(c[0], c[1], c[2]);
+    // Four times the area vector half-way.
+    const Eigen::Vector3d middle = AreaVector(p[0] + c[0], p[1] + c[1], p[2] + c[2]);
+    const double volume = (top + middle + bottom).dot(offset) / 6.0 +
+      rest[mesh.Component(mesh.GetTriangles()(t, 0))] * top.norm();
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      volumes[mesh.GetTriangles()(t, corner)] += volume / 3.0;
+    }
+  }
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (mesh.IsUsed(v) && !this->EnclosesVolume[mesh.Component(v)])
+    {
+      volumes[v] = Undefined;
+    }
+  }
+  return volumes;
+}
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Algebra/ConstrainedSolver.h"
+#include "Base/ExecutionContext.h"
+#include "Mesh/TriangleMesh.h"
+
+#include <memory>
+#include <vector>
+
+namespace cartan
+{
+/// The part of the enclosed volume that lies under each vertex, in the spirit
+/// of Lipman et al., Volume and Shape Preservation via Moving Frame
+/// Manipulation, 2007, section 4 (volume below a surface element in the
+/// direction of the inward normal), but so that the parts of a closed component
+/// sum to its volume exactly, whatever the shape.
+///
+/// Tetrahedra between the triangles and the centroid have that property too,
+/// but are not local: bending one end of a bar moves the centroid and changes
+/// them all. So each point p_i gets its own center c_i, and a vertex a third of
+/// each adjacent prism between triangle (p_i) and (c_i). By Stokes' theorem
+///
+///   Volume = sum over triangles of  int_0^1 a(s) . d ds  +  Volume(c),
+///
+/// with d the mean of p_i - c_i and a(s) the area vector of c_i + s (p_i - c_i),
+/// quadratic in s, so that Simpson's rule is exact. The little that the c_i
+/// still enclose, Volume(c), is spread evenly over the component's area.
+///
+/// The centers of the reference are the surface after one implicit smoothing
+/// step, (M + tau L) c = M p, with tau = (6 volume / area)^2. That is (3 r)^2 in
+/// a tube of radius r, where it leaves a tenth of the distance from the axis; in
+/// a ball the result is all but the centroid. The current centers c' keep the
+/// differences of the reference's, turned with the surface:
+///
+///   (M + tau L) c' = M (p' - R (p - c)) + tau b,
+///   b_i = sum_j w_ij (R_i + R_j) (c_i - c_j) / 2,   R = FitRotations,
+///
+/// without which smoothing would cut the corner of every bend. Where a
+/// part of the surface moves rigidly, its local volumes stay what they are but
+/// for the change of Volume(c).
+class LocalVolumes
+{
+public:
+  /// Factorizes M / tau + L once for all current surfaces.
+  LocalVolumes(std::shared_ptr<const TriangleMesh> mesh, const Points& reference,
+    const ExecutionContext& context = {});
+
+  /// The local volumes of the reference in cubed length units; 0 at unused
+  /// vertices, NaN in components that enclose nothing (open ones, and those
+  /// without volume). Negative where the surface faces its own center: #V.
+  const Eigen::VectorXd& GetReference() const { return this->Reference; }
+
+  /// The same for the current surface.
+  Eigen::VectorXd Measure(const Points& current, const ExecutionContext& context = {}) const;
+
+private:
+  Eigen::VectorXd Sum(const Points& points, const Points& centers) const;
+
+  std::shared_ptr<const TriangleMesh> Mesh;
+  Points Positions;
+  std::vector<char> EnclosesVolume; // #components
+  Eigen::VectorXd EdgeWeight;       // #D
+  Eigen::VectorXd Stiffness;        // #V, M / tau
+  ConstrainedSolver Solver;
+  Points Centers;
+  Eigen::VectorXd Reference;
+};
+}

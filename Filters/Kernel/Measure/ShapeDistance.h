@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/ExecutionContext.h"
+#include "Mesh/TriangleMesh.h"
+
+namespace cartan
+{
+/// The distance of shapes of Lipman et al., Volume and Shape Preservation via
+/// Moving Frame Manipulation, 2007, Eqs. 2 and 3. It does not change when either
+/// surface is moved rigidly.
+struct ShapeDistance
+{
+  /// Dist = 1/2 int |grad R|_F^2 over the reference, without unit. For an
+  /// isometric deformation this is the integral of the squared difference of
+  /// the second fundamental forms: area / r^2 when a plane is rolled to a
+  /// cylinder of radius r.
+  double Total = 0.0;
+  /// |grad R|_F^2 / 2 at each vertex, never negative, in 1 / squared length units:
+  /// #V. Its integral with BarycentricAreas of the reference is Total.
+  Eigen::VectorXd Density;
+};
+
+/// The distance of two surfaces of the same connectivity, `reference` and
+/// `current` (#V x 3). With F the linear map that takes the tangents of the
+/// reference to those of the current surface and the unit normal to the unit
+/// normal, R is the orthogonal factor of F = R U.
+///
+/// Both surfaces are fitted by quadratics in coordinates (x, y) of the reference's
+/// tangent plane around each vertex (see FitNeighborhood), which gives F and its
+/// derivatives, and with them those of R: R^T dR is the cross product with
+///
+///   omega = (tr U - U)^-1 axial(R^T dF - dF^T R),   |dR|_F^2 = 2 |omega|^2.
+///
+/// R is not differenced along edges. Rotations fitted to one-rings are off by a
+/// part of the strain, another one on each ring that is not symmetric, and such
+/// differences over the edge's length grow without limit as meshes get finer.
+///
+/// Converges with the edge length on irregular meshes too, with slivers and
+/// vertices that all but coincide. Zero where the reference has no normal or
+/// either surface is not fitted by a regular patch: where it has collapsed.
+ShapeDistance MeasureShapeDistance(const TriangleMesh& mesh, const Points& reference,
+  const Points& current, const ExecutionContext& context = {});
+
+/// The same for a field of rotations (or other 3 x 3 matrices) that is given
+/// (#V x 9), smooth on the scale of the edges, with linear interpolation in the
+/// triangles: 1/2 sum over edges of w_ij |R_i - R_j|_F^2, w_ij = (cot a + cot b) / 2.
+/// Triangles without area count as equilateral with the longest edge's length.
+ShapeDistance ShapeDistanceOfRotations(const TriangleMesh& mesh, const Points& reference,
+  const Matrices& rotations, const ExecutionContext& context = {});
+}
