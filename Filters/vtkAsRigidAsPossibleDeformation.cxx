@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAsRigidAsPossibleDeformation.h"
 
+#include "Bridge/DeformationMethod.h"
+#include "Bridge/PointArrays.h"
 #include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
-#include "KernelBridge.h"
 
 #include "vtkObjectFactory.h"
-
-#include <algorithm>
 
 vtkStandardNewMacro(vtkAsRigidAsPossibleDeformation);
 
@@ -25,29 +24,23 @@ void vtkAsRigidAsPossibleDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Converged: " << this->Converged << "\n";
 }
 
-void vtkAsRigidAsPossibleDeformation::SetEnergy(int energy)
+void vtkAsRigidAsPossibleDeformation::ForgetResults()
 {
-  energy = std::min(std::max<int>(energy, SPOKES), static_cast<int>(SMOOTHED_ROTATIONS));
-  if (energy != this->Energy)
-  {
-    this->Energy = energy;
-    this->ForgetDeformers();
-    this->Modified();
-  }
+  this->Superclass::ForgetResults();
+  this->NumberOfIterations = 0;
+  this->InitialEnergy = 0.0;
+  this->FinalEnergy = 0.0;
+  this->Converged = false;
 }
 
-void vtkAsRigidAsPossibleDeformation::SetInitialGuess(int guess)
+void vtkAsRigidAsPossibleDeformation::AddSettings(cartan::ContentKey& settings) const
 {
-  guess = std::min(std::max<int>(guess, REST_SHAPE), static_cast<int>(SHAPE_PRESERVING));
-  if (guess != this->InitialGuess)
-  {
-    this->InitialGuess = guess;
-    this->ForgetDeformers();
-    this->Modified();
-  }
+  this->Superclass::AddSettings(settings);
+  settings.Add(static_cast<std::uint64_t>(this->Energy));
+  settings.Add(static_cast<std::uint64_t>(this->InitialGuess));
 }
 
-std::unique_ptr<cartan::SurfaceDeformer> vtkAsRigidAsPossibleDeformation::NewDeformer(
+cartan::DeformationMethod vtkAsRigidAsPossibleDeformation::NewMethod(
   const cartan::HandleProblem& problem, cartan::SolverBackend backend,
   const cartan::ExecutionContext& context)
 {
@@ -59,31 +52,27 @@ std::unique_ptr<cartan::SurfaceDeformer> vtkAsRigidAsPossibleDeformation::NewDef
       static_cast<int>(cartan::InitialGuess::RotationInvariant) == ROTATION_INVARIANT &&
       static_cast<int>(cartan::InitialGuess::ShapePreserving) == SHAPE_PRESERVING,
     "the enumerations agree");
-  return std::make_unique<cartan::AsRigidAsPossibleDeformer>(problem,
+  auto deformer = std::make_unique<cartan::AsRigidAsPossibleDeformer>(problem,
     static_cast<cartan::RigidityEnergy>(this->Energy),
     static_cast<cartan::InitialGuess>(this->InitialGuess), backend, context);
-}
-
-void vtkAsRigidAsPossibleDeformation::ConfigureDeformer(
-  cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext&)
-{
-  auto& rigid = static_cast<cartan::AsRigidAsPossibleDeformer&>(deformer);
-  rigid.SetBending(this->Bending);
-  rigid.SetIteration(this->MaximumIterations, this->Tolerance);
-}
-
-void vtkAsRigidAsPossibleDeformation::DecorateOutput(const cartan::HandleProblem&,
-  cartan::SurfaceDeformer& deformer, const cartan::DeformedSurface&, vtkPolyData* output,
-  const cartan::ExecutionContext&)
-{
-  const auto& rigid = static_cast<const cartan::AsRigidAsPossibleDeformer&>(deformer);
-  this->NumberOfIterations = rigid.GetNumberOfIterations();
-  this->InitialEnergy = rigid.GetEnergies().front();
-  this->FinalEnergy = rigid.GetEnergies().back();
-  this->Converged = rigid.HasConverged();
-  if (this->GenerateRigidityEnergy)
+  auto* rigid = deformer.get();
+  cartan::DeformationMethod method;
+  method.Deformer = std::move(deformer);
+  method.Configure = [this, rigid](cartan::FilterRun&)
   {
-    const Eigen::VectorXd shares = rigid.GetVertexEnergies();
-    cartan::AddPointArray(output, "RigidityEnergy", shares.data(), shares.size(), 1);
-  }
+    rigid->SetBending(this->Bending);
+    rigid->SetIteration(this->MaximumIterations, this->Tolerance);
+  };
+  method.Decorate = [this, rigid](const cartan::DeformedSurface&, cartan::FilterRun& run)
+  {
+    this->NumberOfIterations = rigid->GetNumberOfIterations();
+    this->InitialEnergy = rigid->GetEnergies().front();
+    this->FinalEnergy = rigid->GetEnergies().back();
+    this->Converged = rigid->HasConverged();
+    if (this->GenerateRigidityEnergy)
+    {
+      cartan::AddPointArray(run.Output(), "RigidityEnergy", rigid->GetVertexEnergies());
+    }
+  };
+  return method;
 }

@@ -1,34 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAsRigidAsPossibleDeformation
- * @brief moves handles and keeps the rest as rigid as they allow
+ * @brief moves handles and keeps the rest as rigid as possible
  *
- * Gives each point a rotation, and finds the positions and rotations for which
- * the neighborhoods of all points change their shape least. This is not
- * linear: a guess by a linear method is improved in turns of fitting rotations
- * and solving for positions, none of which raises the energy. Handles count by
- * where their points go, and how they turned is seen from that; with the default
- * InitialGuess their axes and angles count too, so that a handle may turn by
- * more than 180 degrees.
+ * Computes positions and a rotation for each point such that the neighborhoods
+ * of all points change their shape least. The problem is nonlinear: starting
+ * from the result of a linear method, iterations fit rotations and solve for
+ * positions in alternation; the energy never rises. Only the positions of
+ * handle points count; with the default InitialGuess the axes and angles of
+ * motions count too, so that a handle may turn by more than 180 degrees.
  *
- * - SPOKES: the edges at each point. Stretches little, resists bending hardly
- *   at all: creases where much is asked. Negative weights count as zero.
+ * - SPOKES: the edges at each point. Resists stretching, but hardly bending:
+ *   large motions cause creases. Negative weights count as zero.
  * - SPOKES_AND_RIMS: all edges of the triangles at each point. Converges with
  *   finer triangles to an elastic membrane, keeps negative weights.
- * - SMOOTHED_ROTATIONS: SPOKES, and the rotations of neighbors should agree,
- *   as in a thick shell: smooth bends. Bending says how much. Converges more
- *   slowly, the more so the finer the surface.
+ * - SMOOTHED_ROTATIONS: SPOKES with a penalty on differences between the
+ *   rotations of neighbors, as in a thick shell: smooth bends. Bending is its
+ *   weight. Converges more slowly, especially on fine surfaces.
  *
  * An iteration costs about as much as a motion of a linear method. Scale and
- * shear of a handle's motion move its points and are resisted beyond.
+ * shear of a motion move the handle's points; the rest of the surface resists
+ * them.
  *
- * With ConstrainHandlePositions off, moving handles are held in rotation
+ * With ConstrainHandlePositions off, the rotations of moving handles are fixed
  * instead.
  *
  * Ports, arrays, errors: see vtkSurfaceDeformation. `FrameChange` and
- * `RotationVector` are of the rotations that were found. With the initial guess
- * SHAPE_PRESERVING (or PREVIOUS_RESULT, the first time) rotations of 360 degrees
- * or more about different axes are an error. Arrays of the output besides:
+ * `RotationVector` are those of the fitted rotations. With the initial guess
+ * SHAPE_PRESERVING (or PREVIOUS_RESULT, the first time) rotations of 360
+ * degrees or more about different axes are an error. Arrays of the output
+ * besides:
  * - `RigidityEnergy` (GenerateRigidityEnergy): point array of one double, each
  *   point's share of the energy, in squared length units.
  *
@@ -67,7 +68,7 @@ public:
   /**
    * What is minimized. Default: SPOKES.
    */
-  void SetEnergy(int energy);
+  vtkSetClampMacro(Energy, int, SPOKES, SMOOTHED_ROTATIONS);
   vtkGetMacro(Energy, int);
   void SetEnergyToSpokes() { this->SetEnergy(SPOKES); }
   void SetEnergyToSpokesAndRims() { this->SetEnergy(SPOKES_AND_RIMS); }
@@ -95,14 +96,14 @@ public:
   ///@{
   /**
    * Where the iteration starts. SHAPE_PRESERVING: as
-   * vtkShapePreservingDeformation, which takes the handles' angles as they are,
-   * laps included. ROTATION_INVARIANT: as vtkRotationInvariantDeformation, for
-   * rotations below 180 degrees. REST_SHAPE: only the handles moved; the most
-   * iterations. PREVIOUS_RESULT: where the last motion ended; quick where a
-   * handle is dragged by little at a time, but the result depends on the way.
-   * Default: SHAPE_PRESERVING.
+   * vtkShapePreservingDeformation, which uses the handles' angles, full turns
+   * included. ROTATION_INVARIANT: as vtkRotationInvariantDeformation, for
+   * rotations below 180 degrees. REST_SHAPE: the rest shape with moved handles;
+   * needs the most iterations. PREVIOUS_RESULT: the result of the last motion;
+   * fast if a handle is dragged in small steps, but the result depends on the
+   * path. Default: SHAPE_PRESERVING.
    */
-  void SetInitialGuess(int guess);
+  vtkSetClampMacro(InitialGuess, int, REST_SHAPE, SHAPE_PRESERVING);
   vtkGetMacro(InitialGuess, int);
   void SetInitialGuessToRestShape() { this->SetInitialGuess(REST_SHAPE); }
   void SetInitialGuessToPreviousResult() { this->SetInitialGuess(PREVIOUS_RESULT); }
@@ -112,7 +113,7 @@ public:
 
   ///@{
   /**
-   * The most iterations; 0 leaves the initial guess. Default: 10.
+   * The maximum number of iterations; 0 returns the initial guess. Default: 10.
    */
   vtkSetClampMacro(MaximumIterations, int, 0, 100000);
   vtkGetMacro(MaximumIterations, int);
@@ -120,7 +121,7 @@ public:
 
   ///@{
   /**
-   * Iterations stop when one lowers the energy by less than this part of it.
+   * Iterations stop when the energy decreases by less than this fraction.
    * Default: 1e-4.
    */
   vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
@@ -152,13 +153,10 @@ protected:
   vtkAsRigidAsPossibleDeformation() = default;
   ~vtkAsRigidAsPossibleDeformation() override = default;
 
-  std::unique_ptr<cartan::SurfaceDeformer> NewDeformer(const cartan::HandleProblem& problem,
+  cartan::DeformationMethod NewMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
-  void ConfigureDeformer(
-    cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext& context) override;
-  void DecorateOutput(const cartan::HandleProblem& problem, cartan::SurfaceDeformer& deformer,
-    const cartan::DeformedSurface& result, vtkPolyData* output,
-    const cartan::ExecutionContext& context) override;
+  void AddSettings(cartan::ContentKey& settings) const override;
+  void ForgetResults() override;
 
 private:
   int Energy = SPOKES;

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkCurvatureError.h"
 
+#include "Bridge/FilterRun.h"
+#include "Bridge/PointArrays.h"
+#include "Bridge/SurfacePair.h"
 #include "Kernel/Differential/Curvature.h"
 #include "Kernel/Mesh/Geometry.h"
-#include "KernelBridge.h"
-#include "SurfacePair.h"
 
-#include "vtkDoubleArray.h"
-#include "vtkFieldData.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -21,28 +18,33 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 vtkStandardNewMacro(vtkCurvatureError);
 
 namespace
 {
-void AddScalars(vtkPolyData* output, const std::string& name, const Eigen::VectorXd& values)
+/// What the errors are measured against.
+struct ReferenceCurvatures
 {
-  cartan::AddPointArray(output, name, values.data(), values.size(), 1);
-}
+  Eigen::VectorXd Mean;
+  Eigen::VectorXd Gaussian;
+  Eigen::VectorXd Areas;
+  std::string Warning;
+
+  std::size_t GetBytes() const { return 3 * this->Areas.size() * sizeof(double); }
+};
 
 void AddCurvatures(vtkPolyData* output, const cartan::Curvatures& curvatures, bool withDirections)
 {
-  AddScalars(output, "MeanCurvature", curvatures.Mean);
-  AddScalars(output, "GaussianCurvature", curvatures.Gaussian);
-  AddScalars(output, "MaximumCurvature", curvatures.Maximum);
-  AddScalars(output, "MinimumCurvature", curvatures.Minimum);
+  cartan::AddPointArray(output, "MeanCurvature", curvatures.Mean);
+  cartan::AddPointArray(output, "GaussianCurvature", curvatures.Gaussian);
+  cartan::AddPointArray(output, "MaximumCurvature", curvatures.Maximum);
+  cartan::AddPointArray(output, "MinimumCurvature", curvatures.Minimum);
   if (withDirections)
   {
-    cartan::AddPointArray(output, "MaximumCurvatureDirection", curvatures.MaximumDirections.data(),
-      curvatures.MaximumDirections.rows(), 3);
-    cartan::AddPointArray(output, "MinimumCurvatureDirection", curvatures.MinimumDirections.data(),
-      curvatures.MinimumDirections.rows(), 3);
+    cartan::AddPointArray(output, "MaximumCurvatureDirection", curvatures.MaximumDirections);
+    cartan::AddPointArray(output, "MinimumCurvatureDirection", curvatures.MinimumDirections);
   }
   vtkNew<vtkUnsignedCharArray> isDetermined;
   isDetermined->SetName("CurvatureIsDetermined");
@@ -54,12 +56,12 @@ void AddCurvatures(vtkPolyData* output, const cartan::Curvatures& curvatures, bo
 
 /// Empty where every point's curvature is determined. `which` is the input or
 /// the reference.
-std::string DescribeUndetermined(const cartan::Curvatures& curvatures, const std::string& which)
+std::string DescribeUndetermined(const std::vector<char>& isDetermined, const std::string& which)
 {
   cartan::IdSample undetermined;
-  for (std::size_t v = 0; v < curvatures.IsDetermined.size(); ++v)
+  for (std::size_t v = 0; v < isDetermined.size(); ++v)
   {
-    if (!curvatures.IsDetermined[v])
+    if (!isDetermined[v])
     {
       undetermined.Add(static_cast<long long>(v));
     }
@@ -73,52 +75,17 @@ std::string DescribeUndetermined(const cartan::Curvatures& curvatures, const std
       "direction.";
 }
 
-double AddFieldValue(vtkPolyData* output, const std::string& name, double value)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name.c_str());
-  array->InsertNextValue(value);
-  output->GetFieldData()->AddArray(array);
-  return value;
-}
-
 /// Adds the array `name`Error with its summary as field data, and returns the
 /// root mean square and the maximum.
 std::pair<double, double> AddError(vtkPolyData* output, const std::string& name,
   const Eigen::VectorXd& error, const Eigen::VectorXd& areas)
 {
-  AddScalars(output, name + "Error", error);
+  cartan::AddPointArray(output, name + "Error", error);
   const double area = areas.sum();
   const double meanSquare = area > 0.0 ? areas.dot(error.cwiseAbs2()) / area : 0.0;
-  return { AddFieldValue(output, name + "ErrorRMS", std::sqrt(meanSquare)),
-    AddFieldValue(output, name + "ErrorMax", error.cwiseAbs().maxCoeff()) };
+  return { cartan::AddFieldValue(output, name + "ErrorRMS", std::sqrt(meanSquare)),
+    cartan::AddFieldValue(output, name + "ErrorMax", error.cwiseAbs().maxCoeff()) };
 }
-}
-
-vtkCurvatureError::vtkCurvatureError()
-{
-  this->SetNumberOfInputPorts(2);
-}
-
-void vtkCurvatureError::SetReferenceConnection(vtkAlgorithmOutput* reference)
-{
-  this->SetInputConnection(1, reference);
-}
-
-void vtkCurvatureError::SetReferenceData(vtkPolyData* reference)
-{
-  this->SetInputData(1, reference);
-}
-
-int vtkCurvatureError::FillInputPortInformation(int port, vtkInformation* info)
-{
-  if (port == 1)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-    return 1;
-  }
-  return this->Superclass::FillInputPortInformation(port, info);
 }
 
 void vtkCurvatureError::ForgetResults()
@@ -129,49 +96,42 @@ void vtkCurvatureError::ForgetResults()
   this->GaussianCurvatureErrorMax = std::numeric_limits<double>::quiet_NaN();
 }
 
-int vtkCurvatureError::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkCurvatureError::Measure(cartan::FilterRun& run)
 {
-  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* reference = vtkPolyData::GetData(inputVector[1]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  this->ForgetResults();
+  const auto surface = run.ReadSurface();
+  const cartan::Curvatures curvatures =
+    cartan::FitCurvatures(*surface->Mesh, *surface->Positions, run.Context().Part(0.1, 1.0));
+  run.Warn(DescribeUndetermined(curvatures.IsDetermined, "input"));
+  AddCurvatures(run.Output(), curvatures, this->ComputeDirections);
+  run.Output()->GetPointData()->SetActiveScalars("MeanCurvature");
+}
 
-  return cartan::RunGuarded(this,
+void vtkCurvatureError::Compare(const cartan::SurfacePair& pair, cartan::FilterRun& run)
+{
+  const auto before = run.Keep<ReferenceCurvatures>(pair.ReferenceKey,
     [&]
     {
-      const cartan::ExecutionContext context = cartan::MakeContext(this);
-      if (!reference)
-      {
-        const cartan::Surface surface = cartan::ReadSurface(input);
-        cartan::Warn(this, surface.Warning);
-        const cartan::Curvatures curvatures =
-          cartan::FitCurvatures(surface.Mesh, surface.Positions, context);
-        cartan::Warn(this, DescribeUndetermined(curvatures, "input"));
-        output->ShallowCopy(input);
-        AddCurvatures(output, curvatures, this->ComputeDirections);
-        output->GetPointData()->SetActiveScalars("MeanCurvature");
-        return;
-      }
-
-      const cartan::SurfacePair pair = cartan::ReadSurfacePair(input, reference);
-      cartan::Warn(this, pair.Warning);
-      const cartan::Curvatures before =
-        cartan::FitCurvatures(pair.Mesh, pair.Reference, context.Part(0.0, 0.5));
-      const cartan::Curvatures now =
-        cartan::FitCurvatures(pair.Mesh, pair.Current, context.Part(0.5, 1.0));
-      cartan::Warn(this, DescribeUndetermined(before, "reference"));
-      cartan::Warn(this, DescribeUndetermined(now, "input"));
-      const Eigen::VectorXd areas = cartan::MixedVoronoiAreas(pair.Mesh, pair.Reference, context);
-
-      output->ShallowCopy(input);
-      AddCurvatures(output, now, this->ComputeDirections);
-      std::tie(this->MeanCurvatureErrorRMS, this->MeanCurvatureErrorMax) =
-        AddError(output, "MeanCurvature", now.Mean - before.Mean, areas);
-      std::tie(this->GaussianCurvatureErrorRMS, this->GaussianCurvatureErrorMax) =
-        AddError(output, "GaussianCurvature", now.Gaussian - before.Gaussian, areas);
-      output->GetPointData()->SetActiveScalars("MeanCurvatureError");
+      const cartan::Curvatures fitted =
+        cartan::FitCurvatures(*pair.Mesh, *pair.Reference, run.Context().Part(0.1, 0.5));
+      auto kept = std::make_unique<ReferenceCurvatures>();
+      kept->Mean = fitted.Mean;
+      kept->Gaussian = fitted.Gaussian;
+      kept->Warning = DescribeUndetermined(fitted.IsDetermined, "reference");
+      kept->Areas = cartan::MixedVoronoiAreas(*pair.Mesh, *pair.Reference, run.Context());
+      return kept;
     });
+  const cartan::Curvatures now =
+    cartan::FitCurvatures(*pair.Mesh, *pair.Current, run.Context().Part(0.5, 1.0));
+  run.Warn(before->Warning);
+  run.Warn(DescribeUndetermined(now.IsDetermined, "input"));
+
+  vtkPolyData* output = run.Output();
+  AddCurvatures(output, now, this->ComputeDirections);
+  std::tie(this->MeanCurvatureErrorRMS, this->MeanCurvatureErrorMax) =
+    AddError(output, "MeanCurvature", now.Mean - before->Mean, before->Areas);
+  std::tie(this->GaussianCurvatureErrorRMS, this->GaussianCurvatureErrorMax) =
+    AddError(output, "GaussianCurvature", now.Gaussian - before->Gaussian, before->Areas);
+  output->GetPointData()->SetActiveScalars("MeanCurvatureError");
 }
 
 void vtkCurvatureError::PrintSelf(ostream& os, vtkIndent indent)

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkCurvatureError
- * @brief curvatures of a surface, and how they differ from a reference's
+ * @brief curvatures of a surface, and their differences from a reference
  *
  * Computes the curvatures at each point by fitting a cubic to the points
  * around it, and, if there is a reference of the same points and cells (such
  * as the surface before it was deformed), the differences from the reference's.
  *
- * Input 0: a surface. Input 1, optional: the reference. Without it this is a
- * curvature filter whose values, unlike those of vtkCurvatures, are right on
- * open boundaries (a flat plane has zero everywhere), at the poles of spheres
- * and on irregular meshes.
+ * Input 0: a surface. Input 1, optional: the reference. Without it, the filter
+ * computes curvatures that, unlike those of vtkCurvatures, are accurate on open
+ * boundaries (a flat plane has zero everywhere), at the poles of spheres and on
+ * irregular meshes.
  *
  * Output: the surface with these point arrays of doubles. They replace arrays
  * of the same name.
  * - `MeanCurvature`: H, half the sum of the two principal curvatures, in 1 /
- *   length units. A sphere of radius R that is oriented outwards has +1 / R.
+ *   length units. A sphere of radius R that is oriented outward has +1 / R.
  * - `GaussianCurvature`: K, their product, in 1 / squared length units.
  * - `MaximumCurvature`, `MinimumCurvature`: the principal curvatures k1 >= k2,
  *   in 1 / length units.
@@ -38,15 +38,15 @@
  * its mixed Voronoi area in the reference.
  *
  * Polygons are triangulated for the fit (the surface keeps them). All values
- * are 0 at points in no triangle and where the triangles around a point cancel
- * out, so that it has no normal.
+ * are 0 at points in no triangle, and at points without a normal because the
+ * normals of their triangles cancel out.
  *
  * Errors, each with an empty output: no triangles, points that are not finite,
  * triangles that are not manifold or inconsistently oriented, a reference of
  * other points or cells.
  *
- * @warning At a crease the curvature is infinite and the value depends on the
- * size of the triangles, as that of any method.
+ * @warning At a crease the curvature is infinite and the value of any method
+ * depends on the size of the triangles.
  *
  * Reference for the definition of the errors' areas: Meyer, Desbrun,
  * Schroeder, Barr, Discrete Differential-Geometry Operators for Triangulated
@@ -59,29 +59,19 @@
 #ifndef vtkCurvatureError_h
 #define vtkCurvatureError_h
 
-#include "vtkCartanModule.h" // For the export macro
-
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkSurfaceComparison.h"
 
 #include <limits> // For the results before Update
 
-class VTKCARTAN_EXPORT vtkCurvatureError : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkCurvatureError : public vtkSurfaceComparison
 {
 public:
   static vtkCurvatureError* New();
-  vtkTypeMacro(vtkCurvatureError, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkCurvatureError, vtkSurfaceComparison);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   vtkCurvatureError(const vtkCurvatureError&) = delete;
   void operator=(const vtkCurvatureError&) = delete;
-
-  ///@{
-  /**
-   * The surface to compare with, input port 1. Optional.
-   */
-  void SetReferenceConnection(vtkAlgorithmOutput* reference);
-  void SetReferenceData(vtkPolyData* reference);
-  ///@}
 
   ///@{
   /**
@@ -103,16 +93,15 @@ public:
   ///@}
 
 protected:
-  vtkCurvatureError();
+  vtkCurvatureError() = default;
   ~vtkCurvatureError() override = default;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
+  void Compare(const cartan::SurfacePair& pair, cartan::FilterRun& run) override;
+  void Measure(cartan::FilterRun& run) override;
+  bool NeedsReference() const override { return false; }
+  void ForgetResults() override;
 
 private:
-  void ForgetResults();
-
   bool ComputeDirections = false;
   double MeanCurvatureErrorRMS = std::numeric_limits<double>::quiet_NaN();
   double MeanCurvatureErrorMax = std::numeric_limits<double>::quiet_NaN();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDiscreteForms.h"
 
+#include "Bridge/FilterRun.h"
+#include "Bridge/PointArrays.h"
 #include "Kernel/Differential/DiscreteForms.h"
-#include "KernelBridge.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -60,12 +60,8 @@ vtkDiscreteForms::vtkDiscreteForms()
 
 int vtkDiscreteForms::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  if (port == 1)
-  {
-    info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
-    return 1;
-  }
-  return this->Superclass::FillOutputPortInformation(port, info);
+  return port == 1 ? SetOutputType(info, "vtkTable")
+                   : this->Superclass::FillOutputPortInformation(port, info);
 }
 
 vtkTable* vtkDiscreteForms::GetFormsTable()
@@ -73,28 +69,16 @@ vtkTable* vtkDiscreteForms::GetFormsTable()
   return vtkTable::SafeDownCast(this->GetOutputDataObject(1));
 }
 
-int vtkDiscreteForms::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkDiscreteForms::Execute(cartan::FilterRun& run)
 {
-  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
-  vtkTable* table = vtkTable::GetData(outputVector, 1);
-  return cartan::RunGuarded(this,
-    [this, input, output, table]()
-    {
-      const cartan::ExecutionContext context = cartan::MakeContext(this);
-      const cartan::Surface surface = cartan::ReadSurface(input);
-      cartan::Warn(this, surface.Warning);
-      context.Report(0.3);
-      const cartan::Matrices frames =
-        cartan::VertexFrames(surface.Mesh, surface.Positions, context);
-      context.Report(0.5);
-      const cartan::DiscreteForms forms =
-        cartan::ComputeDiscreteForms(surface.Mesh, surface.Positions, frames, context);
-      context.Report(0.7);
-      output->ShallowCopy(input);
-      cartan::AddFrameArrays(output, frames);
-      FillTable(surface.Mesh, forms, table);
-      context.Report(1.0);
-    });
+  const cartan::ExecutionContext& context = run.Context();
+  const auto surface = run.ReadSurface();
+  const cartan::Matrices frames =
+    cartan::VertexFrames(*surface->Mesh, *surface->Positions, context.Part(0.1, 0.5));
+  const cartan::DiscreteForms forms = cartan::ComputeDiscreteForms(
+    *surface->Mesh, *surface->Positions, frames, context.Part(0.5, 0.8));
+  run.Output()->ShallowCopy(run.Input());
+  cartan::AddFrameArrays(run.Output(), frames);
+  FillTable(*surface->Mesh, forms, run.OutputTable(1));
+  context.Report(1.0);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkDiscreteForms
- * @brief describes a surface by its neighborhoods, independent of its place
+ * @brief describes a surface by its neighborhoods, independent of its position
  *
  * Computes the first and second discrete form of a triangulated surface: each
  * edge that leaves a point is split into its projection on the tangent plane
@@ -19,7 +19,8 @@
  * Output 1: a vtkTable with a row per directed edge, grouped by `Vertex`, the
  * one-rings in counter-clockwise order (seen from outside), those of boundary
  * points from boundary edge to boundary edge:
- * - `Vertex`, `Neighbor` (vtkIdType): the edge leads from point to point.
+ * - `Vertex`, `Neighbor` (vtkIdType): the points where the edge starts and
+ *   ends.
  * - `Length` (double, length units >= 0): of the projected edge.
  * - `Angle` (double, radians in (-pi, pi]): from the projected edge to the next
  *   one, positive counter-clockwise; NaN where no triangle follows.
@@ -27,13 +28,13 @@
  * - `Orientation` (int): the sign of Angle's sine, +1 or -1; 0 where no triangle
  *   follows or an edge is parallel to the normal.
  *
- * An edge parallel to the normal has no projected direction and takes that of
- * the edge before it.
+ * An edge parallel to the normal has no projected direction and takes the
+ * direction of the previous edge.
  *
- * Polygons are triangulated for the table (the surface keeps them). Errors, each
- * with empty outputs: no triangles, points that are not finite, not manifold,
- * inconsistently oriented, or a point without normal because all its triangles
- * have no area.
+ * Polygons are triangulated for the table (the surface keeps them). Errors,
+ * each with empty outputs: no triangles, points that are not finite, not
+ * manifold, inconsistently oriented, or a point without a normal because all
+ * its triangles have zero area.
  *
  * Reference: Lipman, Sorkine, Levin, Cohen-Or, Linear Rotation-invariant
  * Coordinates for Meshes, ACM Transactions on Graphics 24(3), 2005, section 2.
@@ -43,17 +44,15 @@
 #ifndef vtkDiscreteForms_h
 #define vtkDiscreteForms_h
 
-#include "vtkCartanModule.h" // For the export macro
-
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkSurfaceFilter.h"
 
 class vtkTable;
 
-class VTKCARTAN_EXPORT vtkDiscreteForms : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkDiscreteForms : public vtkSurfaceFilter
 {
 public:
   static vtkDiscreteForms* New();
-  vtkTypeMacro(vtkDiscreteForms, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkDiscreteForms, vtkSurfaceFilter);
 
   vtkDiscreteForms(const vtkDiscreteForms&) = delete;
   void operator=(const vtkDiscreteForms&) = delete;
@@ -68,8 +67,7 @@ protected:
   ~vtkDiscreteForms() override = default;
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
+  void Execute(cartan::FilterRun& run) override;
 };
 
 #endif

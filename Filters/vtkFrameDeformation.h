@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkFrameDeformation
- * @brief base of the deformations that change frames first, then positions
+ * @brief base of the deformations that compute frames first, then positions
  *
- * What the methods share that find how each point's frame changes and then put
- * the surface together from the changed frames: the weights of the position
- * system and the preservation of volume.
+ * Base of the methods that first compute how each point's frame changes and
+ * then reconstruct the surface from the changed frames. It has the weights of
+ * the position system and the preservation of volume.
  *
- * Volume is preserved in components that are closed and oriented outwards, and
- * in cavities inside of them, whose walls are oriented inwards; others get a
- * warning and no correction. The thickness of the body is measured
- * once per surface, with rays, and kept between motions.
+ * The volume of components that are closed and oriented outward is preserved,
+ * and that of cavities inside of them, whose walls are oriented inward;
+ * other components get a warning and no correction. Rays measure the thickness
+ * of the body once per surface; it is kept between motions.
  *
  * Arrays on request:
  * - `LocalDepth`, `LocalVolume`, `VolumeScale` (GenerateVolumeArrays): point
- *   arrays of one double each: how thick the body at rest is under the point
- *   (length units, 0 where unknown), how much of the deformed body's volume
- *   belongs to it (cubed length units, see vtkVolumeChange), and the factor of
- *   its frame by FRAME_SCALING (1 with any other correction).
+ *   arrays of one double each: the thickness of the body at rest under the
+ *   point (length units, 0 where unknown), the part of the deformed body's
+ *   volume under the point (cubed length units, see vtkVolumeChange), and the
+ *   factor by which FRAME_SCALING scales its frame (1 with any other
+ *   correction).
  * - `ShapeDistance` (GenerateShapeDistance): field data, one double, the
  *   distance 1/2 int |grad R|^2 between the input's and the deformed shape;
  *   `ShapeDistanceDensity`, a point array of its density, per squared length
@@ -34,6 +35,12 @@
 #define vtkFrameDeformation_h
 
 #include "vtkSurfaceDeformation.h"
+
+namespace cartan
+{
+class FrameDeformer;
+struct DeformedSurface;
+}
 
 class VTKCARTAN_EXPORT vtkFrameDeformation : public vtkSurfaceDeformation
 {
@@ -53,12 +60,12 @@ public:
 
   ///@{
   /**
-   * NEUTRAL_OFFSET bends the surface about the middle of the body under it: the
-   * outside of a bend stretches, the inside shrinks. It costs next to nothing
-   * and keeps most of the volume. FRAME_SCALING is the paper's correction by
-   * curvature: frames are scaled and the surface is put together twice; it does
-   * nothing for flat sides. NO_CORRECTION keeps lengths instead. Default: the
-   * concrete class's.
+   * NEUTRAL_OFFSET bends about the middle of the body instead of about its
+   * surface: the outside of a bend stretches, the inside shrinks. Its cost is
+   * negligible and it keeps most of the volume. FRAME_SCALING is the paper's
+   * correction by curvature: frames are scaled and the surface is reconstructed
+   * twice; it has no effect on flat sides. NO_CORRECTION keeps lengths instead.
+   * Default: the concrete class's.
    */
   vtkSetClampMacro(VolumeCorrection, int, NO_CORRECTION, NEUTRAL_OFFSET);
   vtkGetMacro(VolumeCorrection, int);
@@ -70,8 +77,8 @@ public:
   ///@{
   /**
    * Whether to give each component the volume of the input exactly, by the
-   * displacement of free points that disturbs the shape least. One more solve.
-   * Default: off.
+   * displacement of free points that changes the shape least. It needs one more
+   * solve. Default: off.
    */
   vtkSetMacro(CloseVolume, bool);
   vtkGetMacro(CloseVolume, bool);
@@ -88,12 +95,12 @@ public:
 
   ///@{
   /**
-   * The weights of the position system. LIKE_FRAMES: LaplacianWeights serves
-   * both systems, with one factorization. The others are as in
-   * LaplacianWeights; the 2007 paper spreads angles with cotangent weights and
-   * puts the surface together with uniform ones. Default: LIKE_FRAMES.
+   * The weights of the position system. LIKE_FRAMES: LaplacianWeights for both
+   * systems, with one factorization. The others are as in LaplacianWeights; the
+   * 2007 paper spreads angles with cotangent weights and reconstructs the
+   * surface with uniform ones. Default: LIKE_FRAMES.
    */
-  void SetPositionWeights(int weights);
+  vtkSetClampMacro(PositionWeights, int, LIKE_FRAMES, MEAN_VALUE_POSITIONS);
   vtkGetMacro(PositionWeights, int);
   void SetPositionWeightsToLikeFrames() { this->SetPositionWeights(LIKE_FRAMES); }
   void SetPositionWeightsToUniform() { this->SetPositionWeights(UNIFORM_POSITIONS); }
@@ -103,8 +110,8 @@ public:
 
   ///@{
   /**
-   * Adds `LocalDepth`, `LocalVolume` and `VolumeScale`, zero, NaN and one in
-   * components that enclose no volume. Default: off.
+   * Adds `LocalDepth`, `LocalVolume` and `VolumeScale`, which are 0, NaN and 1
+   * in components that enclose no volume. Default: off.
    */
   vtkSetMacro(GenerateVolumeArrays, bool);
   vtkGetMacro(GenerateVolumeArrays, bool);
@@ -121,34 +128,31 @@ public:
   ///@}
 
 protected:
-  vtkFrameDeformation();
-  ~vtkFrameDeformation() override;
+  vtkFrameDeformation() = default;
+  ~vtkFrameDeformation() override = default;
 
-  std::unique_ptr<cartan::SurfaceDeformer> NewDeformer(const cartan::HandleProblem& problem,
+  cartan::DeformationMethod NewMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) final;
 
   /**
-   * The deformer for a problem that is complete.
+   * The method for a problem that is complete: FrameMethod() of a new deformer.
    */
-  virtual std::unique_ptr<cartan::SurfaceDeformer> NewFrameDeformer(
-    const cartan::HandleProblem& problem, cartan::SolverBackend backend,
-    const cartan::ExecutionContext& context) = 0;
+  virtual cartan::DeformationMethod NewFrameMethod(const cartan::HandleProblem& problem,
+    cartan::SolverBackend backend, const cartan::ExecutionContext& context) = 0;
 
   /**
-   * Call it from overrides.
+   * A deformer with the volume correction and the arrays of this class.
    */
-  void ConfigureDeformer(
-    cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext& context) override;
+  cartan::DeformationMethod FrameMethod(std::unique_ptr<cartan::FrameDeformer> deformer);
 
+  void AddSettings(cartan::ContentKey& settings) const override;
   bool NeedsTransforms() const override { return this->GenerateShapeDistance; }
-  void DecorateOutput(const cartan::HandleProblem& problem, cartan::SurfaceDeformer& deformer,
-    const cartan::DeformedSurface& result, vtkPolyData* output,
-    const cartan::ExecutionContext& context) override;
 
 private:
-  class VolumeModels;
+  void CorrectVolume(cartan::FrameDeformer& deformer, cartan::FilterRun& run);
+  void AddVolumeArrays(const cartan::FrameDeformer& deformer, const cartan::DeformedSurface& result,
+    cartan::FilterRun& run);
 
-  std::unique_ptr<VolumeModels> Models;
   int VolumeCorrection = NO_CORRECTION;
   bool CloseVolume = false;
   int PositionWeights = LIKE_FRAMES;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFrameReconstruction.h"
 
+#include "Bridge/FilterRun.h"
+#include "Bridge/PointArrays.h"
+#include "Bridge/SurfaceWriter.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Differential/FrameReconstruction.h"
-#include "KernelBridge.h"
 
 #include "vtkDataArray.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -33,7 +33,20 @@ vtkDataArray* RequireColumn(vtkTable* table, const char* name)
       std::string("The forms table has no numeric column \"") + name +
         "\" of one component: give the table of vtkDiscreteForms (Discrete Forms).");
   }
+  if (column->GetNumberOfTuples() != table->GetNumberOfRows())
+  {
+    throw Error(ErrorCode::BadInput,
+      std::string("The column \"") + name + "\" of the forms table has " +
+        std::to_string(column->GetNumberOfTuples()) + " values for " +
+        std::to_string(table->GetNumberOfRows()) +
+        " rows: give the table of vtkDiscreteForms (Discrete Forms) as it came.");
+  }
   return column;
+}
+
+bool IsVertex(double id, const cartan::TriangleMesh& mesh)
+{
+  return id >= 0.0 && id < mesh.NumberOfVertices() && id == std::floor(id);
 }
 
 /// The table's row for each directed edge of the mesh. Throws unless rows and
@@ -57,8 +70,7 @@ std::vector<vtkIdType> MatchRows(const cartan::TriangleMesh& mesh, vtkTable* tab
   {
     const double vertex = vertices->GetTuple1(row);
     const double neighbor = neighbors->GetTuple1(row);
-    if (vertex >= 0.0 && vertex < mesh.NumberOfVertices() && neighbor >= 0.0 &&
-      neighbor < mesh.NumberOfVertices())
+    if (IsVertex(vertex, mesh) && IsVertex(neighbor, mesh))
     {
       rowsOfVertex[static_cast<int>(vertex)].push_back(row);
     }
@@ -299,77 +311,50 @@ void vtkFrameReconstruction::SetConstraintArrayName(const std::string& name)
 
 int vtkFrameReconstruction::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port == 1)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
-    return 1;
-  }
-  return this->Superclass::FillInputPortInformation(port, info);
+  return port == 1 ? SetPortType(info, "vtkTable")
+                   : this->Superclass::FillInputPortInformation(port, info);
 }
 
-int vtkFrameReconstruction::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkFrameReconstruction::Execute(cartan::FilterRun& run)
 {
-  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
-  vtkTable* table = vtkTable::GetData(inputVector[1]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  return cartan::RunGuarded(this,
-    [this, input, table, output]()
+  const cartan::ExecutionContext& context = run.Context();
+  vtkPolyData* input = run.Input();
+  const auto surface = cartan::ReadConnectivity(input);
+  const cartan::TriangleMesh& mesh = *surface->Mesh;
+  run.Warn(surface->Describe("input", input));
+  const cartan::DiscreteForms forms = ReadForms(mesh, run.InputTable(1));
+
+  Constraints constraints;
+  constraints.IsFixed.assign(mesh.NumberOfVertices(), 0);
+  constraints.Frames = cartan::Identities(mesh.NumberOfVertices());
+  constraints.Positions = cartan::ReadPoints(input, context);
+  if (!this->ConstraintArrayName.empty())
+  {
+    AddInputConstraints(input, mesh, this->ConstraintArrayName, constraints);
+  }
+  const Eigen::Map<const Eigen::Matrix3d> seedFrame(this->SeedFrame);
+  const Eigen::Map<const Eigen::RowVector3d> seedPosition(this->SeedPosition);
+  run.Warn(AddSeeds(mesh, this->ConstraintArrayName.empty() ? this->SeedPoint : -1, seedPosition,
+    seedFrame, constraints));
+  context.Report(0.1);
+
+  const cartan::Transitions transitions = cartan::TransitionsFromForms(mesh, forms,
+    static_cast<cartan::TransitionMethod>(this->TransitionMethod), context.Part(0.1, 0.2));
+  cartan::ConstrainedSolver frameSolver;
+  cartan::Matrices frames = cartan::SolveFrames(mesh, transitions, constraints.IsFixed,
+    std::move(constraints.Frames), frameSolver, context.Part(0.2, 0.7));
+  if (this->ProjectFrames)
+  {
+    for (int v = 0; v < mesh.NumberOfVertices(); ++v)
     {
-      const cartan::ExecutionContext context = cartan::MakeContext(this);
-      const cartan::Surface surface = cartan::ReadConnectivity(input);
-      const cartan::TriangleMesh& mesh = surface.Mesh;
-      const cartan::DiscreteForms forms = ReadForms(mesh, table);
-
-      Constraints constraints;
-      constraints.IsFixed.assign(mesh.NumberOfVertices(), 0);
-      constraints.Frames.resize(mesh.NumberOfVertices(), 9);
-      constraints.Positions.resize(mesh.NumberOfVertices(), 3);
-      const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-      for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-      {
-        cartan::MatrixAt(constraints.Frames, v) = identity;
-        input->GetPoint(v, constraints.Positions.row(v).data());
-      }
-      if (!this->ConstraintArrayName.empty())
-      {
-        AddInputConstraints(input, mesh, this->ConstraintArrayName, constraints);
-      }
-      const Eigen::Map<const Eigen::Matrix3d> seedFrame(this->SeedFrame);
-      const Eigen::Map<const Eigen::RowVector3d> seedPosition(this->SeedPosition);
-      cartan::Warn(this,
-        AddSeeds(mesh, this->ConstraintArrayName.empty() ? this->SeedPoint : -1, seedPosition,
-          seedFrame, constraints));
-      context.Report(0.1);
-
-      const cartan::Transitions transitions = cartan::TransitionsFromForms(
-        mesh, forms, static_cast<cartan::TransitionMethod>(this->TransitionMethod), context);
-      context.Report(0.2);
-      cartan::ConstrainedSolver frameSolver;
-      cartan::Matrices frames = cartan::SolveFrames(mesh, transitions, constraints.IsFixed,
-        std::move(constraints.Frames), frameSolver, context.Part(0.2, 0.7));
-      if (this->ProjectFrames)
-      {
-        for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-        {
-          cartan::MatrixAt(frames, v) = cartan::ProjectOnRotations(cartan::MatrixAt(frames, v));
-        }
-      }
-      cartan::ConstrainedSolver positionSolver;
-      const cartan::Points positions = cartan::SolvePositions(mesh, frames,
-        cartan::RingCoordinates(mesh, forms), constraints.IsFixed, std::move(constraints.Positions),
-        positionSolver, context.Part(0.7, 0.95));
-
-      output->ShallowCopy(input);
-      vtkNew<vtkPoints> points;
-      points->SetDataTypeToDouble();
-      points->SetNumberOfPoints(positions.rows());
-      for (Eigen::Index v = 0; v < positions.rows(); ++v)
-      {
-        points->SetPoint(v, positions.row(v).data());
-      }
-      output->SetPoints(points);
-      cartan::AddFrameArrays(output, frames);
-      context.Report(1.0);
-    });
+      cartan::MatrixAt(frames, v) = cartan::ProjectOnRotations(cartan::MatrixAt(frames, v));
+    }
+  }
+  cartan::ConstrainedSolver positionSolver;
+  const cartan::Points positions =
+    cartan::SolvePositions(mesh, frames, cartan::RingCoordinates(mesh, forms), constraints.IsFixed,
+      std::move(constraints.Positions), positionSolver, context.Part(0.7, 0.95));
+  cartan::WriteReconstruction(*surface, positions, input, run.Output(), context);
+  cartan::AddFrameArrays(run.Output(), frames);
+  context.Report(1.0);
 }

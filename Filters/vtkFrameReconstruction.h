@@ -1,36 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkFrameReconstruction
- * @brief puts a surface together from its discrete forms
+ * @brief reconstructs a surface from its discrete forms
  *
- * Input 0 gives the connectivity: polygons, and with constraints the points
- * they hold; its other coordinates are ignored. Input 1 is a forms table as
- * vtkDiscreteForms makes it, with the columns `Vertex`, `Neighbor`, `Length`,
- * `Angle`, `Height`, `Orientation`; the order of its rows does not matter. Two
- * linear systems follow: the frames from the transitions that the forms define,
- * then the positions from the frames.
+ * Input 0 gives the connectivity: its polygons, and the positions of
+ * constrained points; other coordinates are ignored. Input 1 is a forms table
+ * as vtkDiscreteForms makes it, with the columns `Vertex`, `Neighbor`,
+ * `Length`, `Angle`, `Height`, `Orientation`; the order of its rows does not
+ * matter. It solves two linear systems: for the frames from the transitions
+ * that the forms define, then for the positions from the frames.
  *
  * The output has the input's cells and attributes, points in double precision
  * (whatever the input's, whose coordinates are ignored), and the arrays
  * `FrameTangent1`, `FrameTangent2`, `FrameNormal` of the solution. Points in no
- * triangle keep the input's place.
+ * triangle keep their input position.
  *
- * The forms fix a surface up to a rigid motion of each connected component, so
- * each needs a *seed*: a point with its position and frame. SeedPoint seeds its
- * component; the first point of each other component is seeded with
- * SeedPosition and SeedFrame too, with a warning, unless constraints hold it.
- * Alternatively the points that ConstraintArrayName selects are held where
- * input 0 has them, with the frames that its three frame arrays give.
+ * The forms determine each component up to a rigid motion, so each needs a
+ * *seed*: a point with its position and frame. SeedPoint seeds its component;
+ * the first point of each other component is seeded with SeedPosition and
+ * SeedFrame too, with a warning, unless it has constraints. Alternatively, the
+ * points that ConstraintArrayName selects are fixed at their positions in input
+ * 0, with the frames in its three frame arrays.
  *
- * Forms of a real surface give it back exactly. Forms that were changed by hand
- * or blended need not fit together; the result then fits them best in the
- * least-squares sense.
+ * The forms of a real surface reproduce it exactly. Edited or blended forms
+ * need not fit together; the result then fits them best in the least-squares
+ * sense.
  *
  * Errors, each with an empty output: see vtkDiscreteForms for the connectivity;
- * a table with missing columns, missing, doubled or foreign edges, negative
- * lengths or numbers that are not finite; a seed that is no point of a
- * triangle, or whose frame is no right-handed orthonormal one; missing frame
- * arrays.
+ * a table with missing columns, edges that are missing, occur twice or are not
+ * edges of the surface, negative lengths or numbers that are not finite; a seed
+ * in no triangle, or whose frame is not right-handed and orthonormal; missing
+ * frame arrays.
  *
  * Reference: Lipman, Sorkine, Levin, Cohen-Or, Linear Rotation-invariant
  * Coordinates for Meshes, ACM Transactions on Graphics 24(3), 2005, section 3.
@@ -40,19 +40,17 @@
 #ifndef vtkFrameReconstruction_h
 #define vtkFrameReconstruction_h
 
-#include "vtkCartanModule.h" // For the export macro
-
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkSurfaceFilter.h"
 
 #include <string> // For array names
 
 class vtkTable;
 
-class VTKCARTAN_EXPORT vtkFrameReconstruction : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkFrameReconstruction : public vtkSurfaceFilter
 {
 public:
   static vtkFrameReconstruction* New();
-  vtkTypeMacro(vtkFrameReconstruction, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkFrameReconstruction, vtkSurfaceFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   vtkFrameReconstruction(const vtkFrameReconstruction&) = delete;
@@ -97,10 +95,10 @@ public:
 
   ///@{
   /**
-   * A point array of input 0; points where it is not 0 are held with their
-   * positions and frames (`FrameTangent1`, `FrameTangent2`, `FrameNormal`, point
-   * arrays of input 0). Each component without such a point is seeded. Empty
-   * (the default): seeds only.
+   * A point array of input 0; points where it is not 0 are fixed, with their
+   * positions and frames (`FrameTangent1`, `FrameTangent2`, `FrameNormal`,
+   * point arrays of input 0). Each component without such a point is seeded.
+   * Empty (the default): seeds only.
    */
   void SetConstraintArrayName(const std::string& name);
   std::string GetConstraintArrayName() const { return this->ConstraintArrayName; }
@@ -114,10 +112,10 @@ public:
 
   ///@{
   /**
-   * How the change of frame along an edge is read off the forms. PROCRUSTES:
-   * the rotation that fits the two one-rings best. ORIENTATION_BITS: the
-   * paper's Theorem 3.1, more sensitive to noise. Both agree on the forms of a
-   * surface. Default: PROCRUSTES.
+   * How the transition (change of frame) along an edge is computed from the
+   * forms. PROCRUSTES: the rotation that fits the two one-rings best.
+   * ORIENTATION_BITS: the paper's Theorem 3.1, more sensitive to noise. Both
+   * agree for the forms of a real surface. Default: PROCRUSTES.
    */
   vtkSetClampMacro(TransitionMethod, int, PROCRUSTES, ORIENTATION_BITS);
   vtkGetMacro(TransitionMethod, int);
@@ -127,9 +125,9 @@ public:
 
   ///@{
   /**
-   * Whether frames are projected on rotations before the positions are solved
-   * for. Changes nothing for the forms of a surface; for others, raw
-   * least-squares frames shrink away from the seed. Default: on.
+   * Whether frames are replaced by the closest rotations before positions are
+   * computed. No effect on the forms of a real surface; for other forms,
+   * least-squares frames shrink with the distance from the seed. Default: on.
    */
   vtkSetMacro(ProjectFrames, bool);
   vtkGetMacro(ProjectFrames, bool);
@@ -141,8 +139,7 @@ protected:
   ~vtkFrameReconstruction() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
+  void Execute(cartan::FilterRun& run) override;
 
 private:
   vtkIdType SeedPoint = -1;

@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkHandleMotion
- * @brief where a handle goes: rotation, scale, translation, or any affine map
+ * @brief the motion of a handle: rotation, scale, translation, or any affine map
  *
- * A handle is a set of points that the user holds (see vtkMarkHandle). This
- * object says how one of them moves, in absolute terms: it maps the handle's
- * place in the undeformed surface to its place in the deformed one. A
- * deformation filter takes one motion per handle id. A new motion is the
- * identity, which pins the handle where it is.
+ * A handle is a set of points that the user fixes or moves (see vtkMarkHandle).
+ * This object describes the absolute motion of one handle: it maps its position
+ * in the undeformed surface to its position in the deformed one. A deformation
+ * filter takes one motion per handle id. A new motion is the identity, which
+ * leaves the handle in place.
  *
  * There are three ways to describe the map; `Mode` chooses one:
  *
  * - `AXIS_ANGLE` (default): about `Center`, scale along the coordinate axes by
  *   `Scale`, then rotate by `Angle` about `Axis` through `Center`, then
  *   translate: x' = Center + R (Scale * (x - Center)) + Translation. The angle
- *   is not reduced to one lap: a turn by 480 degrees twists the surface between
- *   the handle and the pinned parts one lap more than a turn by 120 degrees.
+ *   counts full turns: 480 degrees twist the surface between the handle and the
+ *   pinned parts by one full turn more than 120 degrees.
  * - `BOX`: x' = T(BoxPosition) Rz Rx Ry S(BoxScale) x, with the Euler angles
- *   `BoxRotation`: what ParaView's interactive box and vtkBoxRepresentation
- *   make of the box `BoxReferenceBounds`. The box that the user sees is the
- *   image of the reference bounds, so a box that starts around the handle stays
- *   around it and can be grasped again.
+ *   `BoxRotation`: the map of `BoxReferenceBounds` to the interactive box of
+ *   ParaView or of vtkBoxRepresentation. The visible box is the image of the
+ *   reference bounds, so a box that starts around the handle stays around it
+ *   and can be grabbed again.
  * - `MATRIX`: an affine map, x' = Matrix x; its linear part is free (rotation,
  *   scale, shear, reflection).
  *
  * A singular map (a scale of 0) flattens the handle. It is allowed, but not
- * rigid. Numbers that make no map at all (see GetProblem()) make every result
- * the identity; filters refuse such a motion with GetProblem() as the message.
+ * rigid. With invalid numbers (see GetProblem()) every result is the identity;
+ * filters refuse such a motion with GetProblem() as the message.
  *
  * @sa vtkMarkHandle vtkSurfaceDeformation
  */
@@ -74,8 +74,8 @@ public:
 
   ///@{
   /**
-   * AXIS_ANGLE: the point that scale and rotation keep, in the surface's
-   * coordinates. Default: (0, 0, 0).
+   * AXIS_ANGLE: the point that scale and rotation leave in place, in the
+   * surface's coordinates. Default: (0, 0, 0).
    */
   vtkSetVector3Macro(Center, double);
   vtkGetVector3Macro(Center, double);
@@ -101,8 +101,8 @@ public:
 
   ///@{
   /**
-   * AXIS_ANGLE: the angle of rotation in degrees by the right-hand rule, any
-   * number of laps in either direction. Default: 0.
+   * AXIS_ANGLE: the angle of rotation in degrees by the right-hand rule, with
+   * any number of full turns in either direction. Default: 0.
    */
   vtkSetMacro(Angle, double);
   vtkGetMacro(Angle, double);
@@ -120,8 +120,8 @@ public:
   ///@{
   /**
    * BOX: the translation after scale and rotation, in length units. Scale and
-   * rotation keep the origin of the coordinates, not the center of the box.
-   * Default: (0, 0, 0).
+   * rotation act about the origin of the coordinates, not about the center of
+   * the box. Default: (0, 0, 0).
    */
   vtkSetVector3Macro(BoxPosition, double);
   vtkGetVector3Macro(BoxPosition, double);
@@ -161,19 +161,19 @@ public:
 
   ///@{
   /**
-   * MATRIX: the affine map for column vectors; its last row is 0 0 0 1. The
-   * matrix is held, not copied: later changes of its elements count.
-   * Setting a matrix also sets Mode to MATRIX; setting none (the default) in
-   * that mode sets it back to AXIS_ANGLE.
+   * MATRIX: the affine map for column vectors; its last row is 0 0 0 1. This
+   * object keeps a reference to the matrix: later changes of its elements take
+   * effect. Setting a matrix also sets Mode to MATRIX; setting none (the
+   * default) in that mode sets it back to AXIS_ANGLE.
    */
   void SetMatrix(vtkMatrix4x4* matrix);
   vtkMatrix4x4* GetMatrix();
   ///@}
 
   /**
-   * MATRIX: the same, the 16 elements row by row. Makes a matrix of this
-   * object's own and leaves Mode alone, as panels and scripts that set one
-   * property after the other in any order need it.
+   * MATRIX: the same, the 16 elements row by row. Copies them into a new matrix
+   * and does not change Mode, so that panels and scripts can set properties in
+   * any order.
    */
   void SetMatrixElements(const double elements[16]);
 
@@ -183,9 +183,9 @@ public:
   void GetTransform(vtkMatrix4x4* transform);
 
   /**
-   * The same map in coordinates relative to `origin`, x - origin to
-   * x' - origin. Composed so that no digits are lost for a surface and a
-   * Center that are both far from the origin of the coordinates.
+   * The same map in coordinates relative to `origin`, x - origin to x' -
+   * origin. Precise also if surface and Center are far from the origin of the
+   * coordinates.
    */
   void GetTransformRelativeTo(const double origin[3], vtkMatrix4x4* transform);
 
@@ -204,15 +204,15 @@ public:
   bool IsRigid();
 
   /**
-   * Whether nothing moves and nothing turns. A whole lap maps every point to
-   * itself and is no identity: it twists what is attached to the handle.
+   * Whether nothing moves and nothing turns. A full turn maps every point to
+   * itself but is not the identity: it twists the surface at the handle.
    */
   bool IsIdentity();
 
   /**
-   * A sentence that says why the numbers make no map: one is not finite, the
+   * A sentence that says what is wrong with the numbers: one is not finite, the
    * axis of a rotation has no length, the matrix is missing or its last row is
-   * not 0 0 0 1. Empty if all is well.
+   * not 0 0 0 1. Empty if nothing is wrong.
    */
   std::string GetProblem();
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLaplacianDeformation.h"
 
+#include "Bridge/DeformationMethod.h"
 #include "Kernel/Deformation/LaplacianDeformer.h"
 
 #include "vtkObjectFactory.h"
-
-#include <algorithm>
 
 vtkStandardNewMacro(vtkLaplacianDeformation);
 
@@ -16,31 +15,24 @@ void vtkLaplacianDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Rounds: " << this->Rounds << "\n";
 }
 
-void vtkLaplacianDeformation::SetRotations(int rotations)
+void vtkLaplacianDeformation::AddSettings(cartan::ContentKey& settings) const
 {
-  rotations = std::min(std::max<int>(rotations, NO_ROTATIONS), static_cast<int>(IMPLICIT));
-  if (rotations != this->Rotations)
-  {
-    this->Rotations = rotations;
-    this->ForgetDeformers();
-    this->Modified();
-  }
+  this->Superclass::AddSettings(settings);
+  settings.Add(static_cast<std::uint64_t>(this->Rotations));
 }
 
-std::unique_ptr<cartan::SurfaceDeformer> vtkLaplacianDeformation::NewDeformer(
-  const cartan::HandleProblem& problem, cartan::SolverBackend backend,
-  const cartan::ExecutionContext& context)
+cartan::DeformationMethod vtkLaplacianDeformation::NewMethod(const cartan::HandleProblem& problem,
+  cartan::SolverBackend backend, const cartan::ExecutionContext& context)
 {
   static_assert(static_cast<int>(cartan::LaplacianRotations::None) == NO_ROTATIONS &&
       static_cast<int>(cartan::LaplacianRotations::Estimated) == ESTIMATED &&
       static_cast<int>(cartan::LaplacianRotations::Implicit) == IMPLICIT,
     "the enumerations agree");
-  return std::make_unique<cartan::LaplacianDeformer>(
+  auto deformer = std::make_unique<cartan::LaplacianDeformer>(
     problem, static_cast<cartan::LaplacianRotations>(this->Rotations), backend, context);
-}
-
-void vtkLaplacianDeformation::ConfigureDeformer(
-  cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext&)
-{
-  static_cast<cartan::LaplacianDeformer&>(deformer).SetRounds(this->Rounds);
+  auto* laplacian = deformer.get();
+  cartan::DeformationMethod method;
+  method.Deformer = std::move(deformer);
+  method.Configure = [this, laplacian](cartan::FilterRun&) { laplacian->SetRounds(this->Rounds); };
+  return method;
 }

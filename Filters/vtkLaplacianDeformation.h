@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkLaplacianDeformation
- * @brief moves handles and finds the rotations of the surface from their places
+ * @brief moves handles and computes the rotations of the surface from their positions
  *
  * Laplacian editing: the surface whose differential coordinates (each point
- * relative to its neighbors) fit those of the input best, for given places of
- * the handles. Only the places count: a handle that is translated turns its
- * surroundings, and how a handle was turned is seen from where its points went.
+ * relative to its neighbors) fit those of the input best, for given positions
+ * of the handles. Only these positions count, not the rotation of a motion
+ * itself: a handle that is only translated turns its surroundings.
  *
  * - NO_ROTATIONS: differential coordinates keep their direction. Fast, and only
  *   for small motions: details are sheared.
- * - ESTIMATED: they turn as the surface of the round before turned, Rounds
+ * - ESTIMATED: they turn as the surface did in the previous round, Rounds
  *   times. Good up to about 120 degrees.
  * - IMPLICIT: similarities that are linear in the unknown positions, then a
  *   solve with their rotations. The system is three times as large; for
  *   rotations up to about 90 degrees.
  *
- * All lose volume in bends: 5 % at 90 degrees and 19 % at 170 with ESTIMATED on
- * a bar six times as long as wide. For large rotations that are known, use
- * vtkShapePreservingDeformation.
+ * All three lose volume in bends: 5 % at 90 degrees and 19 % at 170 with
+ * ESTIMATED on a bar six times as long as wide. For large rotations that are
+ * known, use vtkShapePreservingDeformation.
  *
  * ConstrainHandlePositions must be on. Ports, arrays, errors: see
  * vtkSurfaceDeformation.
@@ -57,7 +57,7 @@ public:
   /**
    * How differential coordinates turn. Default: ESTIMATED.
    */
-  void SetRotations(int rotations);
+  vtkSetClampMacro(Rotations, int, NO_ROTATIONS, IMPLICIT);
   vtkGetMacro(Rotations, int);
   void SetRotationsToNone() { this->SetRotations(NO_ROTATIONS); }
   void SetRotationsToEstimated() { this->SetRotations(ESTIMATED); }
@@ -66,8 +66,8 @@ public:
 
   ///@{
   /**
-   * ESTIMATED: how many times rotations are estimated, each with a
-   * back-substitution. Default: 5.
+   * ESTIMATED: the number of rounds; each needs one back-substitution. Default:
+   * 5.
    */
   vtkSetClampMacro(Rounds, int, 1, 1000);
   vtkGetMacro(Rounds, int);
@@ -77,10 +77,9 @@ protected:
   vtkLaplacianDeformation() = default;
   ~vtkLaplacianDeformation() override = default;
 
-  std::unique_ptr<cartan::SurfaceDeformer> NewDeformer(const cartan::HandleProblem& problem,
+  cartan::DeformationMethod NewMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
-  void ConfigureDeformer(
-    cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext& context) override;
+  void AddSettings(cartan::ContentKey& settings) const override;
 
 private:
   int Rotations = ESTIMATED;

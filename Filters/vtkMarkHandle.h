@@ -3,11 +3,11 @@
  * @class vtkMarkHandle
  * @brief marks the points of a region as a handle
  *
- * A *handle* is a set of points that the user holds while a deformation filter
- * moves the rest. This filter writes which points belong to it.
+ * A *handle* is a set of points that the user fixes or moves while a
+ * deformation filter moves the rest. This filter marks the points of a handle.
  *
- * Input port 0: a vtkPolyData with points of any kind; a composite data set of
- * such is marked in all its blocks at once. Growing needs triangles or polygons
+ * Input port 0: a vtkPolyData with points of any kind; all blocks of a
+ * composite data set are marked at once. Growing needs triangles or polygons
  * that form an oriented manifold. Input port 1, optional: a vtkSelection of
  * points or cells.
  *
@@ -15,43 +15,46 @@
  * the name is settable): 0 for free points, k >= 1 for the points of handle k.
  * If the input has that array, it is copied and extended, so chained filters
  * mark several handles. It becomes the active point scalars, by which viewers
- * color the surface, unless there are others. The input itself is not touched.
+ * color the surface, unless there are others. The input itself is not changed.
  *
- * The region is given by an implicit function (points with a value <= 0 are
- * in: the inside of a box, sphere or cylinder, the back side of a plane), by the
+ * The region is given by an implicit function (points with a value <= 0 are in:
+ * the inside of a box, sphere or cylinder, the back side of a plane), by the
  * selection (points of selected cells count as selected), or both, and can be
  * grown over the surface by rings of edges or by geodesic distance. Points in
- * no triangle can be marked, but nothing grows from or to them.
+ * no triangle can be marked, but the region does not grow from or to them.
  *
- * A region without points is no error, because widgets pass through such
- * states: the filter warns and passes the array on.
+ * A region without points gives a warning and no new marks, because this can
+ * happen while a widget is dragged.
  *
- * @warning A selection is evaluated as vtkExtractSelection does it; a query as
- * ParaView's Find Data makes it needs another extractor, see
- * SetSelectionExtractor(). Nodes of a selection that name a block
- * (COMPOSITE_INDEX, HIERARCHICAL_INDEX) select in that block only.
+ * @warning vtkExtractSelection evaluates the selection; a query of ParaView's
+ * Find Data needs another extractor, see SetSelectionExtractor(). Nodes of a
+ * selection that name a block (COMPOSITE_INDEX, HIERARCHICAL_INDEX) select in
+ * that block only.
  *
  * @sa vtkHandleMotion vtkSurfaceDeformation vtkExtractSelection
  */
 #ifndef vtkMarkHandle_h
 #define vtkMarkHandle_h
 
-#include "vtkCartanModule.h" // For the export macro
-
-#include "vtkPolyDataAlgorithm.h"
 #include "vtkSmartPointer.h" // For the held objects
+#include "vtkSurfaceFilter.h"
 
 #include <string> // For the array's name
+#include <vector> // For blocks
 
+namespace cartan
+{
+class ExecutionContext;
+}
 class vtkExtractSelection;
 class vtkImplicitFunction;
 class vtkSelection;
 
-class VTKCARTAN_EXPORT vtkMarkHandle : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkMarkHandle : public vtkSurfaceFilter
 {
 public:
   static vtkMarkHandle* New();
-  vtkTypeMacro(vtkMarkHandle, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkMarkHandle, vtkSurfaceFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   vtkMarkHandle(const vtkMarkHandle&) = delete;
@@ -67,8 +70,8 @@ public:
 
   ///@{
   /**
-   * The id that the region's points get, >= 0. With 0 the points become free
-   * again. Default: 1.
+   * The id for the region's points, >= 0. With 0 the points become free again.
+   * Default: 1.
    */
   vtkSetClampMacro(HandleId, int, 0, VTK_INT_MAX);
   vtkGetMacro(HandleId, int);
@@ -78,8 +81,8 @@ public:
   /**
    * The name of the point array. Default: "Handle".
    */
-  vtkSetStdStringFromCharMacro(HandleArrayName);
-  vtkGetCharFromStdStringMacro(HandleArrayName);
+  void SetHandleArrayName(const std::string& name) { this->SetMember(this->HandleArrayName, name); }
+  std::string GetHandleArrayName() const { return this->HandleArrayName; }
   ///@}
 
   enum RegionSourceType
@@ -92,9 +95,9 @@ public:
 
   ///@{
   /**
-   * What makes the region. FUNCTION_OR_SELECTION, the default: the points in
-   * either, where one that is not given has none. FUNCTION and SELECTION use
-   * one and ignore the other. ALL_POINTS needs neither; with HandleId 0 it
+   * Which points form the region. FUNCTION_OR_SELECTION, the default: the
+   * points in either; a missing one contributes none. FUNCTION and SELECTION
+   * use one and ignore the other. ALL_POINTS needs neither; with HandleId 0 it
    * clears all marks.
    */
   vtkSetClampMacro(RegionSource, int, FUNCTION_OR_SELECTION, ALL_POINTS);
@@ -117,8 +120,9 @@ public:
 
   ///@{
   /**
-   * Takes the points with a value > 0 of the function instead. Does not concern
-   * the selection, whose nodes have an inverse of their own. Default: off.
+   * Takes the points with a value > 0 of the function instead. It does not
+   * affect the selection, whose nodes have an inverse of their own. Default:
+   * off.
    */
   vtkSetMacro(InsideOut, bool);
   vtkGetMacro(InsideOut, bool);
@@ -127,7 +131,8 @@ public:
 
   ///@{
   /**
-   * Adds the points within so many edges of the region, >= 0. Default: 0.
+   * Adds the points within this number of edges of the region, >= 0. Default:
+   * 0.
    */
   vtkSetClampMacro(GrowRings, int, 0, VTK_INT_MAX);
   vtkGetMacro(GrowRings, int);
@@ -155,8 +160,8 @@ public:
 
   ///@{
   /**
-   * The kind of extractor that evaluates the selection; each execution makes a
-   * new instance of its class. ParaView's vtkPVExtractSelection also knows
+   * An extractor whose class evaluates the selection; each execution creates a
+   * new instance of that class. ParaView's vtkPVExtractSelection also supports
    * queries. None, the default: vtkExtractSelection.
    */
   void SetSelectionExtractor(vtkExtractSelection* extractor);
@@ -164,8 +169,8 @@ public:
   ///@}
 
   /**
-   * How many points of the region have HandleId after the last execution; with
-   * HandleId 0, how many are free.
+   * The number of points of the region that have HandleId after the last
+   * execution; with HandleId 0, that are free.
    */
   vtkGetMacro(NumberOfMarkedPoints, vtkIdType);
 
@@ -183,8 +188,17 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
+  void Execute(cartan::FilterRun& run) override;
+  void ForgetResults() override { this->NumberOfMarkedPoints = 0; }
+
+private:
+  struct Block;
+
+  /// Makes `output` have the structure of `input`, and pairs their blocks.
+  static std::vector<Block> MakeBlocks(
+    vtkDataObject* input, vtkDataObject* evaluated, vtkDataObject* output);
+  void MarkBlock(
+    const Block& block, cartan::FilterRun& run, const cartan::ExecutionContext& context);
 
   /// Why no point is marked, in a sentence.
   std::string DescribeEmptyRegion(bool hasSelection);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMultiresolutionDeformation.h"
 
+#include "Bridge/DeformationMethod.h"
 #include "Kernel/Deformation/MultiresolutionDeformer.h"
 
 #include "vtkObjectFactory.h"
-
-#include <algorithm>
 
 vtkStandardNewMacro(vtkMultiresolutionDeformation);
 
@@ -15,21 +14,18 @@ void vtkMultiresolutionDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Smoothness: " << this->Smoothness << "\n";
 }
 
-void vtkMultiresolutionDeformation::SetSmoothness(int smoothness)
+void vtkMultiresolutionDeformation::AddSettings(cartan::ContentKey& settings) const
 {
-  smoothness = std::min(std::max(smoothness, 1), 3);
-  if (smoothness != this->Smoothness)
-  {
-    this->Smoothness = smoothness;
-    this->ForgetDeformers();
-    this->Modified();
-  }
+  this->Superclass::AddSettings(settings);
+  settings.Add(static_cast<std::uint64_t>(this->Smoothness));
 }
 
-std::unique_ptr<cartan::SurfaceDeformer> vtkMultiresolutionDeformation::NewDeformer(
+cartan::DeformationMethod vtkMultiresolutionDeformation::NewMethod(
   const cartan::HandleProblem& problem, cartan::SolverBackend backend,
   const cartan::ExecutionContext& context)
 {
-  return std::make_unique<cartan::MultiresolutionDeformer>(
-    problem, this->Smoothness, backend, context);
+  cartan::DeformationMethod method;
+  method.Deformer =
+    std::make_unique<cartan::MultiresolutionDeformer>(problem, this->Smoothness, backend, context);
+  return method;
 }

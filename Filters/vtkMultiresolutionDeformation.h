@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMultiresolutionDeformation
- * @brief deforms a smooth base and carries the details along in its frames
+ * @brief deforms a smooth base; details turn with the frames of the base
  *
  * Two-band multiresolution editing: a smooth base surface that solves L^k x = 0
  * between the handles, and the details as offsets in the base's local frames.
- * The base follows the handles' places, its frames turn with it, and the
- * details with them.
+ * The base follows the positions of the handles; its frames turn, and the
+ * details turn with them.
  *
- * The base knows nothing of the original shape between the handles, so this
- * method suits details on a simple body; details that are no heights over the
- * base come out distorted. Only the places of handles count, and
+ * Between the handles the base does not depend on the original shape, so this
+ * method suits details on a simple body; details that are not heights over the
+ * base are distorted. Only the positions of handle points count, and
  * ConstrainHandlePositions must be on. Ports, arrays, errors: see
  * vtkSurfaceDeformation.
  *
@@ -42,7 +42,7 @@ public:
    * The smoothness k of the base: 1 is a membrane with kinks at the handles, 2 a
    * thin plate, 3 keeps curvature continuous at the handles. Default: 2.
    */
-  void SetSmoothness(int smoothness);
+  vtkSetClampMacro(Smoothness, int, 1, 3);
   vtkGetMacro(Smoothness, int);
   ///@}
 
@@ -50,9 +50,9 @@ protected:
   vtkMultiresolutionDeformation() = default;
   ~vtkMultiresolutionDeformation() override = default;
 
-  std::unique_ptr<cartan::SurfaceDeformer> NewDeformer(const cartan::HandleProblem& problem,
+  cartan::DeformationMethod NewMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
-  void ConfigureDeformer(cartan::SurfaceDeformer&, const cartan::ExecutionContext&) override {}
+  void AddSettings(cartan::ContentKey& settings) const override;
 
 private:
   int Smoothness = 2;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPoissonDeformation.h"
 
+#include "Bridge/DeformationMethod.h"
 #include "Kernel/Deformation/PoissonDeformer.h"
 
 #include "vtkObjectFactory.h"
@@ -13,24 +14,19 @@ void vtkPoissonDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Propagation: " << this->Propagation << "\n";
 }
 
-void vtkPoissonDeformation::SetPropagation(int propagation)
+void vtkPoissonDeformation::AddSettings(cartan::ContentKey& settings) const
 {
-  propagation = propagation <= HARMONIC ? HARMONIC : GEODESIC;
-  if (propagation != this->Propagation)
-  {
-    this->Propagation = propagation;
-    this->ForgetDeformers();
-    this->Modified();
-  }
+  this->Superclass::AddSettings(settings);
+  settings.Add(static_cast<std::uint64_t>(this->Propagation));
 }
 
-std::unique_ptr<cartan::SurfaceDeformer> vtkPoissonDeformation::NewFrameDeformer(
+cartan::DeformationMethod vtkPoissonDeformation::NewFrameMethod(
   const cartan::HandleProblem& problem, cartan::SolverBackend backend,
   const cartan::ExecutionContext& context)
 {
   static_assert(static_cast<int>(cartan::Propagation::Harmonic) == HARMONIC &&
       static_cast<int>(cartan::Propagation::Geodesic) == GEODESIC,
     "the enumerations agree");
-  return std::make_unique<cartan::PoissonDeformer>(
-    problem, static_cast<cartan::Propagation>(this->Propagation), backend, context);
+  return this->FrameMethod(std::make_unique<cartan::PoissonDeformer>(
+    problem, static_cast<cartan::Propagation>(this->Propagation), backend, context));
 }

@@ -3,16 +3,16 @@
  * @class vtkPoissonDeformation
  * @brief spreads the handles' rotations, scales and shears over the surface
  *
- * Poisson editing: each handle's linear map is blended with the identity by
- * weights that fall from 1 at the handle to 0 at the others, the gradients of
- * the surface are transformed, and the surface that fits them best is found.
- * Rotations are blended by their angle, so that laps are kept; scale and shear
- * are blended linearly.
+ * Poisson editing: the handles' linear maps are blended by weights that
+ * decrease from 1 at a handle to 0 at the others; they transform the gradients
+ * of the surface, and the surface that fits these best is computed. Rotations
+ * are blended by their angles, so that full turns are kept; scale and shear are
+ * blended linearly.
  *
- * What a handle passes on is its linear map: one that is only translated
- * stretches the surface without turning it. With GEODESIC weights a long
- * protrusion gets less of a motion at its tip than at its base, because its tip
- * is farther away; HARMONIC ones turn it as a whole. Rotations about different
+ * Only the linear map of a handle acts on the surface: a handle that is only
+ * translated stretches the surface without turning it. With GEODESIC weights
+ * the tip of a long protrusion turns less than its base, because the tip is
+ * farther away; HARMONIC weights turn it as a whole. Rotations about different
  * axes are blended by adding their rotation vectors.
  *
  * One motion per handle; per-point arrays are an error. Ports, arrays, errors:
@@ -51,7 +51,7 @@ public:
   /**
    * How the handles' maps are spread. Default: HARMONIC.
    */
-  void SetPropagation(int propagation);
+  vtkSetClampMacro(Propagation, int, HARMONIC, GEODESIC);
   vtkGetMacro(Propagation, int);
   void SetPropagationToHarmonic() { this->SetPropagation(HARMONIC); }
   void SetPropagationToGeodesic() { this->SetPropagation(GEODESIC); }
@@ -61,8 +61,9 @@ protected:
   vtkPoissonDeformation() = default;
   ~vtkPoissonDeformation() override = default;
 
-  std::unique_ptr<cartan::SurfaceDeformer> NewFrameDeformer(const cartan::HandleProblem& problem,
+  cartan::DeformationMethod NewFrameMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
+  void AddSettings(cartan::ContentKey& settings) const override;
 
 private:
   int Propagation = HARMONIC;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPrepareSurface.h"
 
+#include "Bridge/FilterRun.h"
 #include "Bridge/PreparedSurface.h"
-#include "KernelBridge.h"
 
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
@@ -57,46 +55,38 @@ void SplitDoubledPolygonsAlike(cartan::TriangleSoup& soup)
 }
 }
 
-int vtkPrepareSurface::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkPrepareSurface::Execute(cartan::FilterRun& run)
 {
-  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  this->Report.clear();
+  cartan::TriangleSoup soup =
+    cartan::ReadTriangles(run.Input(), "input", run.Context().Part(0.0, 0.1));
+  if (this->DropDoubledTriangles)
+  {
+    SplitDoubledPolygonsAlike(soup);
+  }
+  cartan::RepairOptions options;
+  options.MergesPoints = this->MergePoints;
+  options.MergesInnerPoints = this->MergeInnerPoints;
+  options.MergeTolerance = this->Tolerance * (this->ToleranceIsAbsolute ? 1.0 : UsedDiagonal(soup));
+  options.DropsDoubled = this->DropDoubledTriangles;
+  options.Orients = this->OrientConsistently;
+  options.CutsNonManifold = this->CutNonManifold;
+  options.OrientsOutwards = this->OrientOutwards;
+  options.AlternatesNested = this->AlternateNested;
+  options.SmallestComponent = this->MinimumComponentArea;
+  options.Holes.MaximumEdges = this->MaximumHoleEdges;
+  if (this->MaximumHoleLength > 0.0)
+  {
+    options.Holes.MaximumLength = this->MaximumHoleLength;
+  }
+  options.FlipsEdges = this->FlipEdges;
+  options.Flips.MaximumAngle = this->FlipAngle * EIGEN_PI / 180.0;
 
-  return cartan::RunGuarded(this,
-    [&]
-    {
-      cartan::TriangleSoup soup = cartan::ReadTriangles(input);
-      if (this->DropDoubledTriangles)
-      {
-        SplitDoubledPolygonsAlike(soup);
-      }
-      cartan::RepairOptions options;
-      options.MergesPoints = this->MergePoints;
-      options.MergesInnerPoints = this->MergeInnerPoints;
-      options.MergeTolerance =
-        this->Tolerance * (this->ToleranceIsAbsolute ? 1.0 : UsedDiagonal(soup));
-      options.DropsDoubled = this->DropDoubledTriangles;
-      options.Orients = this->OrientConsistently;
-      options.CutsNonManifold = this->CutNonManifold;
-      options.OrientsOutwards = this->OrientOutwards;
-      options.AlternatesNested = this->AlternateNested;
-      options.SmallestComponent = this->MinimumComponentArea;
-      options.Holes.MaximumEdges = this->MaximumHoleEdges;
-      if (this->MaximumHoleLength > 0.0)
-      {
-        options.Holes.MaximumLength = this->MaximumHoleLength;
-      }
-      options.FlipsEdges = this->FlipEdges;
-      options.Flips.MaximumAngle = this->FlipAngle * EIGEN_PI / 180.0;
-
-      cartan::RepairedSurface repaired =
-        cartan::RepairSurface(soup.Positions, soup.Faces, options, cartan::MakeContext(this));
-      repaired.Counts.CollapsedTriangles += static_cast<int>(soup.Repeated.GetCount());
-      cartan::WritePreparedSurface(input, soup, repaired, this->AverageMergedArrays, output);
-      this->Report = repaired.Counts.Describe();
-    });
+  cartan::RepairedSurface repaired =
+    cartan::RepairSurface(soup.Positions, soup.Faces, options, run.Context().Part(0.1, 0.9));
+  repaired.Counts.CollapsedTriangles += static_cast<int>(soup.Repeated.GetCount());
+  cartan::WritePreparedSurface(
+    run.Input(), soup, repaired, this->AverageMergedArrays, run.Output());
+  this->Report = repaired.Counts.Describe();
 }
 
 void vtkPrepareSurface::PrintSelf(ostream& os, vtkIndent indent)

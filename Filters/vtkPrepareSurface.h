@@ -63,17 +63,15 @@
 #ifndef vtkPrepareSurface_h
 #define vtkPrepareSurface_h
 
-#include "vtkCartanModule.h" // For the export macro
-
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkSurfaceFilter.h"
 
 #include <string> // For Report
 
-class VTKCARTAN_EXPORT vtkPrepareSurface : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkPrepareSurface : public vtkSurfaceFilter
 {
 public:
   static vtkPrepareSurface* New();
-  vtkTypeMacro(vtkPrepareSurface, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkPrepareSurface, vtkSurfaceFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   vtkPrepareSurface(const vtkPrepareSurface&) = delete;
@@ -222,8 +220,8 @@ protected:
   vtkPrepareSurface() = default;
   ~vtkPrepareSurface() override = default;
 
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
+  void Execute(cartan::FilterRun& run) override;
+  void ForgetResults() override { this->Report.clear(); }
 
 private:
   bool MergePoints = true;

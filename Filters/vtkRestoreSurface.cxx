@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkRestoreSurface.h"
 
+#include "Bridge/FilterRun.h"
 #include "Bridge/RestoredSurface.h"
-#include "KernelBridge.h"
 
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
@@ -28,20 +27,11 @@ void vtkRestoreSurface::SetOriginalData(vtkPolyData* original)
 
 int vtkRestoreSurface::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port == 1)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-    return 1;
-  }
-  return this->Superclass::FillInputPortInformation(port, info);
+  return port == 1 ? SetPortType(info, "vtkPolyData")
+                   : this->Superclass::FillInputPortInformation(port, info);
 }
 
-int vtkRestoreSurface::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkRestoreSurface::Execute(cartan::FilterRun& run)
 {
-  vtkPolyData* prepared = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* original = vtkPolyData::GetData(inputVector[1]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  return cartan::RunGuarded(
-    this, [&] { cartan::Warn(this, cartan::WriteRestoredSurface(prepared, original, output)); });
+  run.Warn(cartan::WriteRestoredSurface(run.Input(0), run.Input(1), run.Output()));
 }

@@ -35,15 +35,13 @@
 #ifndef vtkRestoreSurface_h
 #define vtkRestoreSurface_h
 
-#include "vtkCartanModule.h" // For the export macro
+#include "vtkSurfaceFilter.h"
 
-#include "vtkPolyDataAlgorithm.h"
-
-class VTKCARTAN_EXPORT vtkRestoreSurface : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkRestoreSurface : public vtkSurfaceFilter
 {
 public:
   static vtkRestoreSurface* New();
-  vtkTypeMacro(vtkRestoreSurface, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkRestoreSurface, vtkSurfaceFilter);
 
   vtkRestoreSurface(const vtkRestoreSurface&) = delete;
   void operator=(const vtkRestoreSurface&) = delete;
@@ -61,8 +59,7 @@ protected:
   ~vtkRestoreSurface() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
+  void Execute(cartan::FilterRun& run) override;
 };
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkRotationInvariantDeformation.h"
 
+#include "Bridge/DeformationMethod.h"
 #include "Kernel/Deformation/RotationInvariantDeformer.h"
 
 #include "vtkObjectFactory.h"
@@ -13,21 +14,21 @@ void vtkRotationInvariantDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FrameProjection: " << this->FrameProjection << "\n";
 }
 
-std::unique_ptr<cartan::SurfaceDeformer> vtkRotationInvariantDeformation::NewFrameDeformer(
+cartan::DeformationMethod vtkRotationInvariantDeformation::NewFrameMethod(
   const cartan::HandleProblem& problem, cartan::SolverBackend backend,
   const cartan::ExecutionContext& context)
 {
-  return std::make_unique<cartan::RotationInvariantDeformer>(problem, backend, context);
-}
-
-void vtkRotationInvariantDeformation::ConfigureDeformer(
-  cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext& context)
-{
-  this->Superclass::ConfigureDeformer(deformer, context);
   static_assert(static_cast<int>(cartan::FrameProjection::Automatic) == AUTOMATIC &&
       static_cast<int>(cartan::FrameProjection::None) == NONE &&
       static_cast<int>(cartan::FrameProjection::Rotation) == ROTATION,
     "the enumerations agree");
-  static_cast<cartan::RotationInvariantDeformer&>(deformer).SetFrameProjection(
-    static_cast<cartan::FrameProjection>(this->FrameProjection));
+  auto deformer = std::make_unique<cartan::RotationInvariantDeformer>(problem, backend, context);
+  auto* frames = deformer.get();
+  cartan::DeformationMethod method = this->FrameMethod(std::move(deformer));
+  method.Configure = [this, frames, correct = std::move(method.Configure)](cartan::FilterRun& run)
+  {
+    correct(run);
+    frames->SetFrameProjection(static_cast<cartan::FrameProjection>(this->FrameProjection));
+  };
+  return method;
 }

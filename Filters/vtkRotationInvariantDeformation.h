@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkRotationInvariantDeformation
- * @brief bends, turns, scales and shears a surface, details turning along
+ * @brief bends, turns, scales and shears a surface; details turn with it
  *
- * Editing with linear rotation-invariant coordinates. Each point's frame is
- * blended between those that the handles give, so that frames change as little
- * as possible from point to point; then the surface is put together from the
- * blended frames. Details such as fur or scales turn with the body they sit on.
+ * Editing with linear rotation-invariant coordinates. The frames of the handles
+ * are blended over the surface, so that frames change as little as possible
+ * from point to point; then the surface is reconstructed from the blended
+ * frames. Details such as fur or scales turn with the body they sit on.
  *
- * Rotations up to about 150 degrees per handle come out well. Close to 180
- * degrees the blend concentrates the turning in a narrow band; set several
- * handles along the way, or use several steps.
+ * Rotations up to about 150 degrees per handle work well. Close to 180 degrees
+ * the blend concentrates the rotation in a narrow band; use several handles, or
+ * several steps.
  *
- * The frames see only the linear parts of the motions: a handle that is only
+ * Frames depend only on the linear parts of the motions: a handle that is only
  * translated stretches the surface without turning it.
  *
- * Without projection a motion after the first is a weighted sum per point, with
- * no solve; with it, one back-substitution.
+ * Without projection, each motion after the first is a weighted sum per point,
+ * with no solve; with projection it needs one back-substitution.
  *
  * VolumeCorrection is NO_CORRECTION by default.
  *
@@ -51,10 +51,10 @@ public:
 
   ///@{
   /**
-   * Blended rotations shrink: a bend by 90 degrees keeps 71 % of a bar's volume
-   * with NONE and 97 % with ROTATION, which projects each blended frame on the
-   * closest rotation. Scale and shear need NONE. AUTOMATIC projects when every
-   * motion is rigid. Default: AUTOMATIC.
+   * A blend of rotations shrinks the surface: a bend by 90 degrees keeps 71 %
+   * of a bar's volume with NONE and 97 % with ROTATION, which replaces each
+   * blended frame by the closest rotation. Scale and shear need NONE. AUTOMATIC
+   * projects when every motion is rigid. Default: AUTOMATIC.
    */
   vtkSetClampMacro(FrameProjection, int, AUTOMATIC, ROTATION);
   vtkGetMacro(FrameProjection, int);
@@ -67,10 +67,8 @@ protected:
   vtkRotationInvariantDeformation() = default;
   ~vtkRotationInvariantDeformation() override = default;
 
-  std::unique_ptr<cartan::SurfaceDeformer> NewFrameDeformer(const cartan::HandleProblem& problem,
+  cartan::DeformationMethod NewFrameMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
-  void ConfigureDeformer(
-    cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext& context) override;
 
 private:
   int FrameProjection = AUTOMATIC;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkShapePreservingDeformation.h"
 
+#include "Bridge/DeformationMethod.h"
 #include "Kernel/Deformation/ShapePreservingDeformer.h"
 
 #include "vtkObjectFactory.h"
@@ -23,29 +24,35 @@ void vtkShapePreservingDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Converged: " << this->Converged << "\n";
 }
 
-std::unique_ptr<cartan::SurfaceDeformer> vtkShapePreservingDeformation::NewFrameDeformer(
+void vtkShapePreservingDeformation::ForgetResults()
+{
+  this->Superclass::ForgetResults();
+  this->SharedAxis = true;
+  this->NumberOfIterations = 0;
+  this->Residual = 0.0;
+  this->Converged = true;
+}
+
+cartan::DeformationMethod vtkShapePreservingDeformation::NewFrameMethod(
   const cartan::HandleProblem& problem, cartan::SolverBackend backend,
   const cartan::ExecutionContext& context)
 {
-  return std::make_unique<cartan::ShapePreservingDeformer>(problem, backend, context);
-}
-
-void vtkShapePreservingDeformation::ConfigureDeformer(
-  cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext& context)
-{
-  this->Superclass::ConfigureDeformer(deformer, context);
-  static_cast<cartan::ShapePreservingDeformer&>(deformer).SetIteration(
-    this->MaximumIterations, this->Tolerance);
-}
-
-void vtkShapePreservingDeformation::DecorateOutput(const cartan::HandleProblem& problem,
-  cartan::SurfaceDeformer& deformer, const cartan::DeformedSurface& result, vtkPolyData* output,
-  const cartan::ExecutionContext& context)
-{
-  const auto& shape = static_cast<cartan::ShapePreservingDeformer&>(deformer);
-  this->SharedAxis = shape.HasSharedAxis();
-  this->NumberOfIterations = shape.GetNumberOfIterations();
-  this->Residual = shape.GetResidual();
-  this->Converged = shape.HasConverged();
-  this->Superclass::DecorateOutput(problem, deformer, result, output, context);
+  auto deformer = std::make_unique<cartan::ShapePreservingDeformer>(problem, backend, context);
+  auto* shape = deformer.get();
+  cartan::DeformationMethod method = this->FrameMethod(std::move(deformer));
+  method.Configure = [this, shape, correct = std::move(method.Configure)](cartan::FilterRun& run)
+  {
+    correct(run);
+    shape->SetIteration(this->MaximumIterations, this->Tolerance);
+  };
+  method.Decorate = [this, shape, decorate = std::move(method.Decorate)](
+                      const cartan::DeformedSurface& result, cartan::FilterRun& run)
+  {
+    this->SharedAxis = shape->HasSharedAxis();
+    this->NumberOfIterations = shape->GetNumberOfIterations();
+    this->Residual = shape->GetResidual();
+    this->Converged = shape->HasConverged();
+    decorate(result, run);
+  };
+  return method;
 }

@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkShapePreservingDeformation
- * @brief large bends and twists in one step, shape and volume preserved
+ * @brief large bends and twists in one step, preserving shape and volume
  *
  * Turns the frames of the surface by the rotation field of least energy between
  * the handles, which of all isometric deformations changes the curvatures
- * least, and puts the surface together from them.
+ * least, and reconstructs the surface from them.
  *
- * If all handles turn about the same axis (as their vtkHandleMotion or rotation
- * vectors say; pinned ones fit any), the angle is spread harmonically, and may
- * be of any size: 480 degrees wind the surface by one lap and a third.
+ * If all handles turn about the same axis (by their vtkHandleMotion or rotation
+ * vectors; pinned handles fit any axis), the angle is a harmonic field and may
+ * have any size: 480 degrees wind the surface by one and a third full turns.
  *
- * With different axes the field is found in conformal coordinates of the
+ * With different axes the field is computed in conformal coordinates of the
  * rotation group, for rotations below 360 degrees; more is an error. One
- * iterate needs no factorization and is close to the best field;
- * MaximumIterations > 1 refines it, with a warning where that does not
- * converge.
+ * iteration needs no factorization and is close to the best field;
+ * MaximumIterations > 1 refines it, with a warning if that does not converge.
  *
- * Scale and shear of a handle are blended linearly beneath the rotations.
+ * Scale and shear of the handles are blended linearly and applied before the
+ * rotations.
  *
- * VolumeCorrection is NEUTRAL_OFFSET by default. The axis and the angle matter,
- * not only where the handles end up: a handle that is only translated stretches
- * the surface without turning it. With ConstrainHandlePositions off the ends of
- * a bend find their place by themselves.
+ * VolumeCorrection is NEUTRAL_OFFSET by default. The axis and the angle of a
+ * motion matter, not only the final positions of the handle: a handle that is
+ * only translated stretches the surface without turning it. With
+ * ConstrainHandlePositions off, the positions of the ends of a bend follow from
+ * the method.
  *
  * Ports, arrays, errors: see vtkSurfaceDeformation and vtkFrameDeformation.
  * Reference: Lipman, Cohen-Or, Gal, Levin, Volume and Shape Preservation via
@@ -47,9 +48,9 @@ public:
 
   ///@{
   /**
-   * The most iterates of the rotation field where axes differ; 1 is the linear
-   * one. 3 to 10 suffice up to 120 degrees, 50 up to 270. Each costs a
-   * factorization. Default: 1.
+   * The maximum number of iterations for the rotation field if axes differ; 1
+   * is the linear solution. 3 to 10 suffice up to 120 degrees, 50 up to 270.
+   * Each after the first costs a factorization. Default: 1.
    */
   vtkSetClampMacro(MaximumIterations, int, 1, 10000);
   vtkGetMacro(MaximumIterations, int);
@@ -57,8 +58,8 @@ public:
 
   ///@{
   /**
-   * Iterates stop when the field changes by less than this part of its largest
-   * value. Default: 1e-6.
+   * Iterations stop when the field changes by less than this fraction of its
+   * largest value. Default: 1e-6.
    */
   vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);
@@ -66,9 +67,9 @@ public:
 
   ///@{
   /**
-   * Of the last update: whether all rotations shared an axis; the number of
-   * iterates (0 if so); the last relative change, 0 after a single iterate; and
-   * whether the iteration converged (true where there was none).
+   * Of the last update: whether all rotations have the same axis; the number of
+   * iterations (0 if so); the last relative change, 0 after a single iteration;
+   * and whether the iteration converged (true if there was none).
    */
   vtkGetMacro(SharedAxis, bool);
   vtkGetMacro(NumberOfIterations, int);
@@ -80,13 +81,9 @@ protected:
   vtkShapePreservingDeformation();
   ~vtkShapePreservingDeformation() override = default;
 
-  std::unique_ptr<cartan::SurfaceDeformer> NewFrameDeformer(const cartan::HandleProblem& problem,
+  cartan::DeformationMethod NewFrameMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
-  void ConfigureDeformer(
-    cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext& context) override;
-  void DecorateOutput(const cartan::HandleProblem& problem, cartan::SurfaceDeformer& deformer,
-    const cartan::DeformedSurface& result, vtkPolyData* output,
-    const cartan::ExecutionContext& context) override;
+  void ForgetResults() override;
 
 private:
   int MaximumIterations = 1;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSimilarityDeformation.h"
 
+#include "Bridge/DeformationMethod.h"
+#include "Bridge/PointArrays.h"
 #include "Kernel/Deformation/SimilarityDeformer.h"
-#include "KernelBridge.h"
 
 #include "vtkObjectFactory.h"
-
-#include <algorithm>
 
 vtkStandardNewMacro(vtkSimilarityDeformation);
 
@@ -22,65 +21,53 @@ void vtkSimilarityDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfDisplacedPoints: " << this->NumberOfDisplacedPoints << "\n";
 }
 
-void vtkSimilarityDeformation::SetCoherenceRings(int rings)
+void vtkSimilarityDeformation::ForgetResults()
 {
-  rings = std::min(std::max(rings, 1), 2);
-  if (rings != this->CoherenceRings)
-  {
-    this->CoherenceRings = rings;
-    this->ForgetDeformers();
-    this->Modified();
-  }
+  this->Superclass::ForgetResults();
+  this->NumberOfDisplacedPoints = 0;
 }
 
-void vtkSimilarityDeformation::SetConstrainHandleTransforms(bool constrain)
+void vtkSimilarityDeformation::AddSettings(cartan::ContentKey& settings) const
 {
-  if (constrain != this->ConstrainHandleTransforms)
-  {
-    this->ConstrainHandleTransforms = constrain;
-    this->ForgetDeformers();
-    this->Modified();
-  }
+  this->Superclass::AddSettings(settings);
+  settings.Add(static_cast<std::uint64_t>(this->CoherenceRings));
+  settings.Add(static_cast<std::uint64_t>(this->ConstrainHandleTransforms));
 }
 
-std::unique_ptr<cartan::SurfaceDeformer> vtkSimilarityDeformation::NewDeformer(
-  const cartan::HandleProblem& problem, cartan::SolverBackend backend,
-  const cartan::ExecutionContext& context)
-{
-  cartan::SimilarityDeformer::Options options;
-  options.CoherenceRings = this->CoherenceRings;
-  options.ConstrainTransforms = this->ConstrainHandleTransforms;
-  auto deformer =
-    std::make_unique<cartan::SimilarityDeformer>(problem, options, backend, context.Part(0.0, 0.7));
-  // The other factorizations belong to the set-up, not to the first motion.
-  deformer->SetReconstruction(static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));
-  deformer->SetRefits(this->Refits);
-  deformer->Prepare(context.Part(0.7, 1.0));
-  return deformer;
-}
-
-void vtkSimilarityDeformation::ConfigureDeformer(
-  cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext&)
+cartan::DeformationMethod vtkSimilarityDeformation::NewMethod(const cartan::HandleProblem& problem,
+  cartan::SolverBackend backend, const cartan::ExecutionContext& context)
 {
   static_assert(static_cast<int>(cartan::SimilarityReconstruction::Affine) == AFFINE &&
       static_cast<int>(cartan::SimilarityReconstruction::LeastSquares) == LEAST_SQUARES &&
       static_cast<int>(cartan::SimilarityReconstruction::EdgeForm) == EDGE_FORM,
     "the enumerations agree");
-  auto& similarity = static_cast<cartan::SimilarityDeformer&>(deformer);
-  similarity.SetReconstruction(static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));
-  similarity.SetScaleFeatures(this->ScaleFeatures);
-  similarity.SetRefits(this->Refits);
-}
-
-void vtkSimilarityDeformation::DecorateOutput(const cartan::HandleProblem&,
-  cartan::SurfaceDeformer& deformer, const cartan::DeformedSurface&, vtkPolyData* output,
-  const cartan::ExecutionContext&)
-{
-  const auto& similarity = static_cast<const cartan::SimilarityDeformer&>(deformer);
-  this->NumberOfDisplacedPoints = similarity.GetNumberOfDisplacedVertices();
-  if (this->GenerateScaleFactor)
+  cartan::SimilarityDeformer::Options options;
+  options.CoherenceRings = this->CoherenceRings;
+  options.ConstrainTransforms = this->ConstrainHandleTransforms;
+  auto deformer =
+    std::make_unique<cartan::SimilarityDeformer>(problem, options, backend, context.Part(0.0, 0.7));
+  auto* similarity = deformer.get();
+  // The other factorizations belong to the set-up, not to the first motion.
+  similarity->SetReconstruction(
+    static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));
+  similarity->SetRefits(this->Refits);
+  similarity->Prepare(context.Part(0.7, 1.0));
+  cartan::DeformationMethod method;
+  method.Deformer = std::move(deformer);
+  method.Configure = [this, similarity](cartan::FilterRun&)
   {
-    const Eigen::VectorXd& scales = similarity.GetScaleFactors();
-    cartan::AddPointArray(output, "ScaleFactor", scales.data(), scales.size(), 1);
-  }
+    similarity->SetReconstruction(
+      static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));
+    similarity->SetScaleFeatures(this->ScaleFeatures);
+    similarity->SetRefits(this->Refits);
+  };
+  method.Decorate = [this, similarity](const cartan::DeformedSurface&, cartan::FilterRun& run)
+  {
+    this->NumberOfDisplacedPoints = similarity->GetNumberOfDisplacedVertices();
+    if (this->GenerateScaleFactor)
+    {
+      cartan::AddPointArray(run.Output(), "ScaleFactor", similarity->GetScaleFactors());
+    }
+  };
+  return method;
 }

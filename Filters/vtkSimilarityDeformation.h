@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSimilarityDeformation
- * @brief deforms by rotations and scales that follow from where handles go
+ * @brief deforms by rotations and scales computed from the positions of handles
  *
  * Each point gets a deformation gradient that is linear in the unknown
  * positions of its neighbors; the surface is solved for with gradients that
  * vary as little as possible; shear is removed from them by a polar
- * decomposition; and the surface is put together from the rotations (and
- * scales) that are left. Unlike methods that spread the handles' transforms,
- * this one also finds rotations where handles are only translated.
+ * decomposition; and the surface is reconstructed from the remaining rotations
+ * (and scales). Unlike methods that spread the handles' transforms, this one
+ * also finds rotations where handles are only translated.
  *
  * Handles give positions and transforms; one of the two can be switched off for
  * moving handles (ConstrainHandlePositions, ConstrainHandleTransforms). Pinned
- * handles hold both; to hold the place of points without their orientation,
- * give them the identity as motion.
+ * handles fix both; to fix the positions of a handle without its orientation,
+ * give it the identity as motion.
  *
- * Softly held points (ConstraintWeightArrayName): w^2 times the squared
- * distance from the target, in units of the mean edge length at the point,
- * joins the sums of squares; with EDGE_FORM the second solve takes it as
- * vtkSurfaceDeformation says. The weights act on positions alone; transforms
- * hold where w > 0.
+ * Soft constraints (ConstraintWeightArrayName) add w^2 times the squared
+ * distance from the target, in units of the mean edge length at the point, to
+ * the sums of squares; the second solve of EDGE_FORM uses them as
+ * vtkSurfaceDeformation describes. The weights act on positions only;
+ * transforms are fixed where w > 0.
  *
  * The output has, besides the arrays of vtkSurfaceDeformation, on request the
  * point array `ScaleFactor` (GenerateScaleFactor).
  *
  * @warning Gradients are blended linearly: a twist by more than 90 degrees is
- * spread unevenly (20 degrees of error at 150, 33 at 170); bends are far better.
- * A translation alone finds a part of the rotation; Refits adds to it.
+ * uneven (20 degrees of error at 150, 33 at 170); bends are much better. A
+ * translation alone gives only a part of the rotation; Refits improves this.
  *
- * Errors, besides those of vtkSurfaceDeformation: moving handles that hold
- * neither positions nor transforms; a part where no transform and only
- * positions in one plane are held; triangles so degenerate that no gradient
- * exists. A motion that mirrors or flattens is followed with a warning.
+ * Errors, besides those of vtkSurfaceDeformation: moving handles that fix
+ * neither positions nor transforms; a component where only positions in one
+ * plane and no transform are fixed; triangles so degenerate that no gradient
+ * exists. A motion that mirrors or flattens gives a warning.
  *
  * Reference: Fu, Au, Tai, Effective Derivation of Similarity Transformations
  * for Implicit Laplacian Mesh Editing, Computer Graphics Forum 26(1), 2007.
@@ -57,8 +57,8 @@ public:
   /**
    * Off: features keep their size (Eq. 9), for rigid motions. On: they scale
    * with the surface around them (Eq. 10), for motions with scale and for
-   * handles that come closer or go apart; a similarity of all handles together
-   * is reproduced exactly. Default: off.
+   * handles that move closer together or apart; a similarity of all handles
+   * together is reproduced exactly. Default: off.
    */
   vtkSetMacro(ScaleFeatures, bool);
   vtkGetMacro(ScaleFeatures, bool);
@@ -67,21 +67,21 @@ public:
 
   ///@{
   /**
-   * Gradients are compared between points within so many edges, 1 or 2. One
-   * makes the set-up a third shorter; two give slightly smoother gradients.
-   * Default: 2, as in the paper.
+   * Gradients are compared between points within this number of edges, 1 or 2.
+   * With 1 the set-up is a third shorter; with 2 gradients are slightly
+   * smoother. Default: 2, as in the paper.
    */
-  void SetCoherenceRings(int rings);
+  vtkSetClampMacro(CoherenceRings, int, 1, 2);
   vtkGetMacro(CoherenceRings, int);
   ///@}
 
   ///@{
   /**
-   * Whether moving handles hold the transforms of their motions. Off: only the
-   * positions of their points count, and the surface turns at them as it likes.
+   * Whether moving handles fix the transforms of their motions. Off: they fix
+   * only the positions of their points, and the surface can turn there.
    * Default: on.
    */
-  void SetConstrainHandleTransforms(bool constrain);
+  vtkSetMacro(ConstrainHandleTransforms, bool);
   vtkGetMacro(ConstrainHandleTransforms, bool);
   vtkBooleanMacro(ConstrainHandleTransforms, bool);
   ///@}
@@ -95,11 +95,11 @@ public:
 
   ///@{
   /**
-   * How the surface is put together. AFFINE: as the first solve finds it, with
-   * shear. LEAST_SQUARES: from transformed Laplacian coordinates, the paper's
-   * choice, smoother at the borders of handles. EDGE_FORM: from transformed
-   * edges, better lengths and volumes in bends, and rotations of flat parts.
-   * Default: EDGE_FORM.
+   * How the surface is reconstructed. AFFINE: the result of the first solve,
+   * with shear. LEAST_SQUARES: from transformed Laplacian coordinates, the
+   * paper's choice, smoother at the borders of handles. EDGE_FORM: from
+   * transformed edges, better lengths and volumes in bends, and rotations of
+   * flat parts. Default: EDGE_FORM.
    */
   vtkSetClampMacro(Reconstruction, int, AFFINE, EDGE_FORM);
   vtkGetMacro(Reconstruction, int);
@@ -110,10 +110,10 @@ public:
 
   ///@{
   /**
-   * How often rotations are fitted to the result and the surface is put
-   * together again, from edges, 0 to 1000; each costs a back-substitution. 3
-   * help much where handles are translated. Without effect with AFFINE. Default:
-   * 0.
+   * How often rotations are fitted to the result and the surface is
+   * reconstructed again, from edges, 0 to 1000; each needs one
+   * back-substitution. Use 3 if handles are only translated. No effect with
+   * AFFINE. Default: 0.
    */
   vtkSetClampMacro(Refits, int, 0, 1000);
   vtkGetMacro(Refits, int);
@@ -123,7 +123,7 @@ public:
   /**
    * Adds the point array `ScaleFactor`: the root mean square of the singular
    * values of the deformation gradient, 1 where nothing changes; after Refits
-   * that of the edges' lengths. Default: off.
+   * that of the edge lengths. Default: off.
    */
   vtkSetMacro(GenerateScaleFactor, bool);
   vtkGetMacro(GenerateScaleFactor, bool);
@@ -140,13 +140,10 @@ protected:
   vtkSimilarityDeformation() = default;
   ~vtkSimilarityDeformation() override = default;
 
-  std::unique_ptr<cartan::SurfaceDeformer> NewDeformer(const cartan::HandleProblem& problem,
+  cartan::DeformationMethod NewMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
-  void ConfigureDeformer(
-    cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext& context) override;
-  void DecorateOutput(const cartan::HandleProblem& problem, cartan::SurfaceDeformer& deformer,
-    const cartan::DeformedSurface& result, vtkPolyData* output,
-    const cartan::ExecutionContext& context) override;
+  void AddSettings(cartan::ContentKey& settings) const override;
+  void ForgetResults() override;
 
 private:
   bool ScaleFeatures = false;

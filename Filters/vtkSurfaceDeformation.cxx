@@ -1,280 +1,48 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDeformation.h"
 
+#include "Bridge/DeformationMethod.h"
+#include "Bridge/HandleMotions.h"
+#include "Bridge/PointArrays.h"
+#include "Bridge/SurfaceWriter.h"
 #include "Kernel/Algebra/ConstrainedSolver.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/HandleCurve.h"
-#include "Kernel/Deformation/HandleProblem.h"
-#include "Kernel/Deformation/SurfaceDeformer.h"
-#include "KernelBridge.h"
 #include "vtkHandleMotion.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
-#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
 
 #include <algorithm>
-#include <cmath>
-#include <list>
-#include <map>
-#include <set>
 
 using cartan::Error;
 using cartan::ErrorCode;
 
 namespace
 {
-/// Composite inputs with more blocks than this read some of them anew with each
-/// motion; fewer would do so sooner, more would hold more memory.
-constexpr std::size_t MaximumNumberOfSessions = 32;
+/// More rows than anybody types into a table.
+constexpr int MaximumNumberOfMotionRows = 100000;
 
-/// The motions of one update, by handle id.
-using MotionsById = std::map<int, vtkHandleMotion*>;
-
-/// What is kept of one surface between motions.
-struct Session
+/// What is kept of a surface, its handles and the settings between motions.
+struct Preparation
 {
-  std::shared_ptr<const cartan::Surface> Surface;
   cartan::HandleProblem Problem;
-  cartan::SolverBackend Backend = cartan::SolverBackend::Automatic;
-  std::unique_ptr<cartan::SurfaceDeformer> Deformer;
+  cartan::DeformationMethod Method;
   cartan::DeformedSurface Result;
+
+  std::size_t GetBytes() const
+  {
+    const auto doubles = this->Problem.SoftWeights.size() + this->Result.Positions.size() +
+      this->Result.Transforms.size() + this->Result.FrameScale.size();
+    return this->Method.Deformer->GetBytes() + this->Problem.Handle.capacity() * sizeof(int) +
+      static_cast<std::size_t>(doubles) * sizeof(double);
+  }
 };
-
-/// The handle of each point; 0 for points in no triangle, which never move.
-std::vector<int> ReadHandles(
-  vtkPolyData* input, const cartan::TriangleMesh& mesh, const std::string& name)
-{
-  if (!input->GetPointData()->HasArray(name.c_str()))
-  {
-    throw Error(ErrorCode::BadInput,
-      "The input has no point array \"" + name +
-        "\" that says which points are handles: mark some with vtkMarkHandle (Mark Handle), or "
-        "set HandleArrayName.");
-  }
-  vtkDataArray* array = cartan::RequirePointArray(input, name, 1);
-  std::vector<int> handles(mesh.NumberOfVertices(), 0);
-  cartan::IdSample bad;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    const double value = array->GetTuple1(v);
-    if (!(value >= 0.0 && value <= VTK_INT_MAX && value == std::floor(value)))
-    {
-      bad.Add(v);
-    }
-    else if (mesh.IsUsed(v))
-    {
-      handles[v] = static_cast<int>(value);
-    }
-  }
-  if (!bad.IsEmpty())
-  {
-    throw Error(ErrorCode::BadInput,
-      "The point array \"" + name + "\" has " + bad.Describe("value", "values") +
-        " that are no whole numbers >= 0: 0 is free, k >= 1 belongs to handle k.");
-  }
-  return handles;
-}
-
-/// A point array as a field, required to be finite at the handles' points.
-cartan::Field ReadHandleValues(
-  vtkPolyData* input, const std::string& name, int components, const std::vector<int>& handles)
-{
-  vtkDataArray* array = cartan::RequirePointArray(input, name, components);
-  cartan::Field values(static_cast<Eigen::Index>(handles.size()), components);
-  cartan::IdSample bad;
-  for (std::size_t v = 0; v < handles.size(); ++v)
-  {
-    array->GetTuple(static_cast<vtkIdType>(v), values.row(v).data());
-    if (handles[v] > 0 && !values.row(v).allFinite())
-    {
-      bad.Add(static_cast<long long>(v));
-    }
-  }
-  if (!bad.IsEmpty())
-  {
-    throw Error(ErrorCode::BadInput,
-      "The point array \"" + name + "\" has " + bad.Describe("handle point", "handle points") +
-        " with a NaN or infinite value.");
-  }
-  return values;
-}
-
-Eigen::VectorXd ReadSoftWeights(
-  vtkPolyData* input, const std::string& name, const std::vector<int>& handles)
-{
-  vtkDataArray* array = cartan::RequirePointArray(input, name, 1);
-  Eigen::VectorXd weights(static_cast<Eigen::Index>(handles.size()));
-  cartan::IdSample bad;
-  for (std::size_t v = 0; v < handles.size(); ++v)
-  {
-    // Those of free points mean nothing: they must not look like a change.
-    weights[v] = handles[v] > 0 ? array->GetTuple1(static_cast<vtkIdType>(v)) : 0.0;
-    if (!(weights[v] >= 0.0))
-    {
-      bad.Add(static_cast<long long>(v));
-    }
-  }
-  if (!bad.IsEmpty())
-  {
-    throw Error(ErrorCode::BadInput,
-      "The point array \"" + name + "\" has " + bad.Describe("handle point", "handle points") +
-        " with a weight that is negative or NaN: 0 does not hold, infinity holds exactly.");
-  }
-  return weights;
-}
-
-std::string ListIds(const std::set<int>& ids)
-{
-  std::string text;
-  for (const int id : ids)
-  {
-    text += (text.empty() ? "" : ", ") + std::to_string(id);
-  }
-  return text;
-}
-
-/// Throws for motions that move nothing or are no map.
-void RequireMeaningfulMotions(const MotionsById& motions, const std::vector<int>& handles)
-{
-  std::set<int> present(handles.begin(), handles.end());
-  present.erase(0);
-  for (const auto& [id, motion] : motions)
-  {
-    if (!present.count(id))
-    {
-      throw Error(ErrorCode::BadInput,
-        "Handle " + std::to_string(id) +
-          " has a motion, but no point in a triangle belongs to it. " +
-          (present.empty() ? std::string("No point belongs to any handle")
-                           : "Handles with points: " + ListIds(present)) +
-          ". Mark points for it or remove the motion.");
-    }
-    const std::string problem = motion->GetProblem();
-    if (!problem.empty())
-    {
-      throw Error(
-        ErrorCode::BadInput, "The motion of handle " + std::to_string(id) + ": " + problem);
-    }
-  }
-}
-
-/// The per-point arrays, empty where not used.
-struct HandleArrays
-{
-  cartan::Field Positions;       // n x 3, relative to the surface's origin
-  cartan::Field RotationVectors; // n x 3
-  cartan::Field Transforms;      // n x 9, row by row
-};
-
-/// Whether the arrays leave a point as it is.
-bool IsAtRest(const HandleArrays& arrays, const cartan::Points& rest, int v)
-{
-  return (arrays.Positions.rows() == 0 || arrays.Positions.row(v) == rest.row(v)) &&
-    (arrays.RotationVectors.rows() == 0 || arrays.RotationVectors.row(v).isZero(0.0)) &&
-    (arrays.Transforms.rows() == 0 ||
-      Eigen::Map<const Eigen::Matrix3d>(arrays.Transforms.row(v).data()).isIdentity(0.0));
-}
-
-cartan::HandleMotion ToKernel(vtkHandleMotion* motion, const Eigen::Vector3d& origin)
-{
-  vtkNew<vtkMatrix4x4> transform;
-  motion->GetTransformRelativeTo(origin.data(), transform);
-  cartan::HandleMotion result;
-  for (int row = 0; row < 3; ++row)
-  {
-    for (int column = 0; column < 3; ++column)
-    {
-      result.Linear(row, column) = transform->GetElement(row, column);
-    }
-    result.Translation[row] = transform->GetElement(row, 3);
-  }
-  motion->GetRotationVector(result.RotationVector.data());
-  return result;
-}
-
-/// Per-vertex targets where handles without a motion move by arrays.
-void AddPerVertexTargets(const HandleArrays& arrays, const cartan::HandleProblem& problem,
-  const MotionsById& motions, cartan::HandleTargets& targets)
-{
-  const cartan::Points& rest = *problem.Rest;
-  targets.Positions = rest;
-  targets.RotationVectors = cartan::Points::Zero(rest.rows(), 3);
-  targets.Transforms.resize(rest.rows(), 9);
-  for (Eigen::Index v = 0; v < rest.rows(); ++v)
-  {
-    auto transform = cartan::MatrixAt(targets.Transforms, v);
-    transform.setIdentity();
-    const auto moving =
-      std::lower_bound(problem.Moving.begin(), problem.Moving.end(), problem.Handle[v]);
-    if (moving == problem.Moving.end() || *moving != problem.Handle[v])
-    {
-      continue;
-    }
-    if (motions.count(*moving))
-    {
-      const cartan::HandleMotion& motion = targets.Motions[moving - problem.Moving.begin()];
-      targets.Positions.row(v) =
-        (motion.Linear * rest.row(v).transpose() + motion.Translation).transpose();
-      targets.RotationVectors.row(v) = motion.RotationVector.transpose();
-      transform = motion.Linear;
-      continue;
-    }
-    if (arrays.Positions.rows())
-    {
-      targets.Positions.row(v) = arrays.Positions.row(v);
-    }
-    if (arrays.RotationVectors.rows())
-    {
-      targets.RotationVectors.row(v) = arrays.RotationVectors.row(v);
-      transform = cartan::RotationFromVector(arrays.RotationVectors.row(v).transpose());
-    }
-    if (arrays.Transforms.rows())
-    {
-      transform = Eigen::Map<const Eigen::Matrix3d>(arrays.Transforms.row(v).data()).transpose();
-      targets.RotationVectors.row(v) =
-        cartan::VectorFromRotation(cartan::ProjectOnRotations(transform)).transpose();
-    }
-  }
-}
-
-/// Whether a deformer for `old` serves `problem` too: a handle that may move
-/// need not.
-bool Serves(const cartan::HandleProblem& old, const cartan::HandleProblem& problem)
-{
-  return old.Handle == problem.Handle && old.Weights == problem.Weights &&
-    old.ConstrainPositions == problem.ConstrainPositions &&
-    old.SoftWeights.size() == problem.SoftWeights.size() &&
-    old.SoftWeights == problem.SoftWeights &&
-    (problem.ConstrainPositions ? std::includes(old.Moving.begin(), old.Moving.end(),
-                                    problem.Moving.begin(), problem.Moving.end())
-                                : old.Moving == problem.Moving);
-}
-
-/// The box around the points of handle `id`; invalid if there are none.
-vtkBoundingBox BoundsOfHandle(vtkPolyData* surface, const std::string& arrayName, int id)
-{
-  vtkBoundingBox bounds;
-  vtkDataArray* handles = surface->GetPointData()->GetArray(arrayName.c_str());
-  const vtkIdType count =
-    handles ? std::min(handles->GetNumberOfTuples(), surface->GetNumberOfPoints()) : 0;
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    if (handles->GetComponent(i, 0) == id)
-    {
-      bounds.AddPoint(surface->GetPoint(i));
-    }
-  }
-  return bounds;
-}
 
 /// Makes no side shorter than a tenth of the longest, and the box a little larger
 /// than what it holds; `length` is the longest side of a box that is a point.
@@ -300,7 +68,7 @@ void AddTransformArrays(
     {
       change[v] = (cartan::MatrixAt(result.Transforms, v) - Eigen::Matrix3d::Identity()).norm();
     }
-    cartan::AddPointArray(output, "FrameChange", change.data(), size, 1);
+    cartan::AddPointArray(output, "FrameChange", change);
   }
   if (rotationVector)
   {
@@ -311,7 +79,7 @@ void AddTransformArrays(
         cartan::ProjectOnRotations(cartan::MatrixAt(result.Transforms, v)))
                          .transpose();
     }
-    cartan::AddPointArray(output, "RotationVector", vectors.data(), size, 3);
+    cartan::AddPointArray(output, "RotationVector", vectors);
   }
 }
 }
@@ -320,6 +88,7 @@ class vtkSurfaceDeformation::Internals
 {
 public:
   std::map<int, vtkSmartPointer<vtkHandleMotion>> Motions;
+  vtkSmartPointer<vtkHandleMotion> ActiveMotion;
   struct Row
   {
     double Id = 0.0;
@@ -327,20 +96,21 @@ public:
   };
   std::vector<std::unique_ptr<Row>> Rows;
 
-  /// Most recently used first.
-  std::list<Session> Sessions;
-
   int Factorizations = 0;
   int FreePoints = 0;
   double SetupTime = 0.0;
   double MotionTime = 0.0;
 
-  MotionsById GetMotions() const
+  cartan::MotionsById GetMotions(int activeHandle) const
   {
-    MotionsById motions;
+    cartan::MotionsById motions;
     for (const auto& [id, motion] : this->Motions)
     {
       motions[id] = motion;
+    }
+    if (this->ActiveMotion)
+    {
+      motions[activeHandle] = this->ActiveMotion;
     }
     for (const auto& row : this->Rows)
     {
@@ -359,30 +129,6 @@ public:
       }
     }
     return motions;
-  }
-
-  /// The session of the input's surface, at the front of the list.
-  Session& FindSession(vtkAlgorithm* filter, vtkPolyData* input)
-  {
-    auto found = std::find_if(this->Sessions.begin(), this->Sessions.end(),
-      [input](const Session& session)
-      { return cartan::IsSameSurface(session.Surface->ReadFrom, input); });
-    if (found == this->Sessions.end())
-    {
-      Session session;
-      session.Surface = std::make_shared<const cartan::Surface>(cartan::ReadSurface(input));
-      cartan::Warn(filter, session.Surface->Warning);
-      this->Sessions.push_front(std::move(session));
-      if (this->Sessions.size() > MaximumNumberOfSessions)
-      {
-        this->Sessions.pop_back();
-      }
-    }
-    else
-    {
-      this->Sessions.splice(this->Sessions.begin(), this->Sessions, found);
-    }
-    return this->Sessions.front();
   }
 };
 
@@ -414,41 +160,8 @@ void vtkSurfaceDeformation::PrintSelf(ostream& os, vtkIndent indent)
     os << indent << "Motion of handle " << id << ":\n";
     motion->PrintSelf(os, indent.GetNextIndent());
   }
+  os << indent << "ActiveMotion: " << (this->State->ActiveMotion ? "set" : "(none)") << "\n";
   os << indent << "MotionRows: " << this->State->Rows.size() << "\n";
-}
-
-void vtkSurfaceDeformation::SetName(std::string& member, const std::string& name)
-{
-  if (member != name)
-  {
-    member = name;
-    this->Modified();
-  }
-}
-
-void vtkSurfaceDeformation::SetHandleArrayName(const std::string& name)
-{
-  this->SetName(this->HandleArrayName, name);
-}
-
-void vtkSurfaceDeformation::SetTargetPositionArrayName(const std::string& name)
-{
-  this->SetName(this->TargetPositionArrayName, name);
-}
-
-void vtkSurfaceDeformation::SetRotationVectorArrayName(const std::string& name)
-{
-  this->SetName(this->RotationVectorArrayName, name);
-}
-
-void vtkSurfaceDeformation::SetTransformArrayName(const std::string& name)
-{
-  this->SetName(this->TransformArrayName, name);
-}
-
-void vtkSurfaceDeformation::SetConstraintWeightArrayName(const std::string& name)
-{
-  this->SetName(this->ConstraintWeightArrayName, name);
 }
 
 void vtkSurfaceDeformation::SetHandleMotion(int id, vtkHandleMotion* motion)
@@ -489,9 +202,10 @@ void vtkSurfaceDeformation::RemoveHandleMotion(int id)
 
 void vtkSurfaceDeformation::RemoveAllHandleMotions()
 {
-  if (!this->State->Motions.empty())
+  if (!this->State->Motions.empty() || this->State->ActiveMotion)
   {
     this->State->Motions.clear();
+    this->State->ActiveMotion = nullptr;
     this->Modified();
   }
 }
@@ -503,33 +217,28 @@ void vtkSurfaceDeformation::SetActiveHandle(int id)
     vtkErrorMacro("Handle ids are >= 1; got " << id << ".");
     return;
   }
-  if (id != this->ActiveHandle)
-  {
-    // The active motion goes with the active handle.
-    vtkSmartPointer<vtkHandleMotion> motion = this->GetActiveMotion();
-    this->RemoveHandleMotion(this->ActiveHandle);
-    this->ActiveHandle = id;
-    if (motion)
-    {
-      this->State->Motions[id] = motion;
-    }
-    this->Modified();
-  }
+  this->SetMember(this->ActiveHandle, id);
 }
 
 void vtkSurfaceDeformation::SetActiveMotion(vtkHandleMotion* motion)
 {
-  this->SetHandleMotion(this->ActiveHandle, motion);
+  this->SetMember(this->State->ActiveMotion, motion);
 }
 
 vtkHandleMotion* vtkSurfaceDeformation::GetActiveMotion() const
 {
-  return this->GetHandleMotion(this->ActiveHandle);
+  return this->State->ActiveMotion;
 }
 
 void vtkSurfaceDeformation::SetNumberOfMotionRows(int count)
 {
-  if (count < 0 || count == this->GetNumberOfMotionRows())
+  if (count < 0 || count > MaximumNumberOfMotionRows)
+  {
+    vtkErrorMacro(
+      "The motions' table has 0 to " << MaximumNumberOfMotionRows << " rows; got " << count << ".");
+    return;
+  }
+  if (count == this->GetNumberOfMotionRows())
   {
     return;
   }
@@ -553,9 +262,10 @@ void vtkSurfaceDeformation::SetMotionRow(int row, double id, double scaleX, doub
   double scaleZ, double angle, double axisX, double axisY, double axisZ, double centerX,
   double centerY, double centerZ, double translationX, double translationY, double translationZ)
 {
-  if (row < 0)
+  if (row < 0 || row >= MaximumNumberOfMotionRows)
   {
-    vtkErrorMacro("Rows are numbered from 0; got " << row << ".");
+    vtkErrorMacro(
+      "Rows are numbered from 0 to " << MaximumNumberOfMotionRows - 1 << "; got " << row << ".");
     return;
   }
   this->SetNumberOfMotionRows(std::max(row + 1, this->GetNumberOfMotionRows()));
@@ -600,7 +310,7 @@ double* vtkSurfaceDeformation::GetActiveHandleBounds()
   {
     if (surface && surface->GetNumberOfPoints() > 0)
     {
-      handle.AddBox(BoundsOfHandle(surface, this->HandleArrayName, this->ActiveHandle));
+      handle.AddBox(cartan::BoundsOfHandle(surface, this->HandleArrayName, this->ActiveHandle));
       all.AddBounds(surface->GetBounds());
     }
   };
@@ -632,6 +342,10 @@ vtkMTimeType vtkSurfaceDeformation::GetMTime()
   {
     time = std::max(time, entry.second->GetMTime());
   }
+  if (this->State->ActiveMotion)
+  {
+    time = std::max(time, this->State->ActiveMotion->GetMTime());
+  }
   for (const auto& row : this->State->Rows)
   {
     time = std::max(time, row->Motion->GetMTime());
@@ -639,137 +353,137 @@ vtkMTimeType vtkSurfaceDeformation::GetMTime()
   return time;
 }
 
-void vtkSurfaceDeformation::DecorateOutput(const cartan::HandleProblem&, cartan::SurfaceDeformer&,
-  const cartan::DeformedSurface&, vtkPolyData*, const cartan::ExecutionContext&)
+void vtkSurfaceDeformation::ForgetResults()
 {
+  this->State->FreePoints = 0;
+  this->State->SetupTime = 0.0;
+  this->State->MotionTime = 0.0;
 }
 
-void vtkSurfaceDeformation::ForgetDeformers()
+void vtkSurfaceDeformation::AddSettings(cartan::ContentKey& settings) const
 {
-  for (Session& session : this->State->Sessions)
+  settings.Add(static_cast<std::uint64_t>(this->LaplacianWeights));
+  settings.Add(static_cast<std::uint64_t>(this->Solver));
+  settings.Add(static_cast<std::uint64_t>(this->ConstrainHandlePositions));
+  settings.Add(static_cast<std::uint64_t>(this->ScaleConstraintWeights));
+}
+
+cartan::HandleProblem vtkSurfaceDeformation::MakeProblem(vtkPolyData* input,
+  const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
+  std::vector<int> moving) const
+{
+  static_assert(static_cast<int>(cartan::LaplacianWeights::Uniform) == UNIFORM &&
+      static_cast<int>(cartan::LaplacianWeights::Cotangent) == COTANGENT &&
+      static_cast<int>(cartan::LaplacianWeights::MeanValue) == MEAN_VALUE,
+    "the enumerations agree");
+  cartan::HandleProblem problem;
+  problem.Mesh = surface->Mesh;
+  problem.Rest = surface->Positions;
+  problem.Handle = handles.OfVertex;
+  problem.Moving = std::move(moving);
+  problem.Weights = static_cast<cartan::LaplacianWeights>(this->LaplacianWeights);
+  problem.PositionWeights = problem.Weights;
+  problem.ConstrainPositions = this->ConstrainHandlePositions;
+  if (!this->ConstraintWeightArrayName.empty())
   {
-    session.Deformer.reset();
+    problem.SoftWeights = cartan::ReadSoftWeights(input, this->ConstraintWeightArrayName, handles);
+    if (this->ScaleConstraintWeights)
+    {
+      const Eigen::ArrayXd shares =
+        cartan::HandleCurveShares(*surface->Mesh, *surface->Positions, problem.Handle);
+      const Eigen::ArrayXd weights = problem.SoftWeights;
+      problem.SoftWeights = weights.isInf().select(weights, weights * shares.sqrt());
+    }
   }
+  return problem;
 }
 
-int vtkSurfaceDeformation::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkSurfaceDeformation::Execute(cartan::FilterRun& run)
 {
-  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  return cartan::RunGuarded(this,
-    [this, input, output]()
+  static_assert(static_cast<int>(cartan::SolverBackend::Automatic) == AUTOMATIC_SOLVER &&
+      static_cast<int>(cartan::SolverBackend::Eigen) == EIGEN &&
+      static_cast<int>(cartan::SolverBackend::Cholmod) == CHOLMOD,
+    "the enumerations agree");
+  const double start = vtkTimerLog::GetUniversalTime();
+  vtkPolyData* input = run.Input();
+  const auto surface = run.ReadSurface();
+
+  cartan::ContentKey key = surface->Key;
+  key.Add(this->HandleArrayName);
+  key.Add(cartan::KeyOfPointArray(input, this->HandleArrayName).GetValue());
+  const auto handles = run.Keep<cartan::Handles>(key,
+    [&]
     {
-      const double start = vtkTimerLog::GetUniversalTime();
-      const cartan::ExecutionContext context = cartan::MakeContext(this);
-      Session& session = this->State->FindSession(this, input);
-      const auto surface = session.Surface;
+      return std::make_unique<cartan::Handles>(
+        cartan::ReadHandles(input, *surface->Mesh, this->HandleArrayName));
+    });
+  const cartan::MotionsById motions = this->State->GetMotions(this->ActiveHandle);
+  cartan::RequireMeaningfulMotions(motions, *handles);
+  const auto arrays = this->KeepHandleArrays(run, *surface, *handles, key);
 
-      cartan::HandleProblem problem;
-      problem.Mesh = { surface, &surface->Mesh };
-      problem.Rest = { surface, &surface->Positions };
-      problem.Handle = ReadHandles(input, surface->Mesh, this->HandleArrayName);
-      if (!this->ConstraintWeightArrayName.empty())
-      {
-        problem.SoftWeights =
-          ReadSoftWeights(input, this->ConstraintWeightArrayName, problem.Handle);
-        if (this->ScaleConstraintWeights)
-        {
-          const Eigen::ArrayXd shares =
-            cartan::HandleCurveShares(surface->Mesh, surface->Positions, problem.Handle);
-          const Eigen::ArrayXd weights = problem.SoftWeights;
-          problem.SoftWeights = weights.isInf().select(weights, weights * shares.sqrt());
-        }
-      }
-      static_assert(static_cast<int>(cartan::LaplacianWeights::Uniform) == UNIFORM &&
-          static_cast<int>(cartan::LaplacianWeights::Cotangent) == COTANGENT &&
-          static_cast<int>(cartan::LaplacianWeights::MeanValue) == MEAN_VALUE &&
-          static_cast<int>(cartan::SolverBackend::Automatic) == AUTOMATIC_SOLVER &&
-          static_cast<int>(cartan::SolverBackend::Eigen) == EIGEN &&
-          static_cast<int>(cartan::SolverBackend::Cholmod) == CHOLMOD,
-        "the enumerations agree");
-      problem.Weights = static_cast<cartan::LaplacianWeights>(this->LaplacianWeights);
-      problem.PositionWeights = problem.Weights;
-      problem.ConstrainPositions = this->ConstrainHandlePositions;
+  std::vector<int> moving = arrays->MovingIds;
+  for (const auto& entry : motions)
+  {
+    moving.push_back(entry.first);
+  }
+  std::sort(moving.begin(), moving.end());
+  moving.erase(std::unique(moving.begin(), moving.end()), moving.end());
+  key.AddBytes(moving.data(), moving.size() * sizeof(int));
+  key.Add(cartan::KeyOfPointArray(input, this->ConstraintWeightArrayName).GetValue());
+  key.Add(this->ConstraintWeightArrayName);
+  this->AddSettings(key);
+  const auto prepared = run.Keep<Preparation>(key,
+    [&]
+    {
+      auto fresh = std::make_unique<Preparation>();
+      fresh->Problem = this->MakeProblem(input, surface, *handles, moving);
+      fresh->Method = this->NewMethod(fresh->Problem,
+        static_cast<cartan::SolverBackend>(this->Solver), run.Context().Part(0.1, 0.6));
+      this->State->Factorizations += fresh->Method.Deformer->GetNumberOfFactorizations();
+      return fresh;
+    });
 
-      const MotionsById motions = this->State->GetMotions();
-      RequireMeaningfulMotions(motions, problem.Handle);
-      std::set<int> moving;
-      for (const auto& entry : motions)
-      {
-        moving.insert(entry.first);
-      }
-      HandleArrays arrays;
-      if (!this->TargetPositionArrayName.empty())
-      {
-        arrays.Positions =
-          ReadHandleValues(input, this->TargetPositionArrayName, 3, problem.Handle);
-        arrays.Positions.rowwise() -= surface->Origin.transpose();
-      }
-      if (!this->RotationVectorArrayName.empty())
-      {
-        arrays.RotationVectors =
-          ReadHandleValues(input, this->RotationVectorArrayName, 3, problem.Handle);
-      }
-      if (!this->TransformArrayName.empty())
-      {
-        arrays.Transforms = ReadHandleValues(input, this->TransformArrayName, 9, problem.Handle);
-      }
-      if (arrays.RotationVectors.rows() && arrays.Transforms.rows())
-      {
-        throw Error(ErrorCode::BadInput,
-          "Both a rotation vector array and a transform array are set: choose one.");
-      }
-      bool isPerVertex = false;
-      for (int v = 0; v < surface->Mesh.NumberOfVertices(); ++v)
-      {
-        const int handle = problem.Handle[v];
-        if (handle > 0 && !motions.count(handle) && !IsAtRest(arrays, surface->Positions, v))
-        {
-          moving.insert(handle);
-          isPerVertex = true;
-        }
-      }
-      problem.Moving.assign(moving.begin(), moving.end());
+  cartan::SurfaceDeformer& deformer = *prepared->Method.Deformer;
+  const cartan::HandleTargets targets =
+    cartan::MakeTargets(prepared->Problem, surface->Origin, motions, *handles, *arrays);
+  const int factorizations = deformer.GetNumberOfFactorizations();
+  prepared->Method.Configure(run);
+  const double ready = vtkTimerLog::GetUniversalTime();
+  deformer.Deform(targets,
+    this->GenerateFrameChange || this->GenerateRotationVector || this->NeedsTransforms(),
+    prepared->Result, run.Context().Part(0.8, 0.95));
+  this->State->Factorizations += deformer.GetNumberOfFactorizations() - factorizations;
+  run.Warn(deformer.GetWarning());
 
-      const auto backend = static_cast<cartan::SolverBackend>(this->Solver);
-      if (!session.Deformer || session.Backend != backend || !Serves(session.Problem, problem))
-      {
-        session.Deformer.reset();
-        session.Problem = problem;
-        session.Backend = backend;
-        session.Deformer = this->NewDeformer(problem, backend, context.Part(0.0, 0.5));
-        this->State->Factorizations += session.Deformer->GetNumberOfFactorizations();
-      }
+  run.Warn(
+    cartan::WriteSurface(*surface, prepared->Result.Positions, input, run.Output(), run.Context()));
+  AddTransformArrays(
+    prepared->Result, this->GenerateFrameChange, this->GenerateRotationVector, run.Output());
+  prepared->Method.Decorate(prepared->Result, run);
+  this->State->FreePoints = deformer.GetNumberOfFreeVertices();
+  this->State->SetupTime = ready - start;
+  this->State->MotionTime = vtkTimerLog::GetUniversalTime() - ready;
+}
 
-      cartan::HandleTargets targets;
-      for (const int id : session.Problem.Moving)
-      {
-        const auto motion = motions.find(id);
-        targets.Motions.push_back(motion == motions.end()
-            ? cartan::HandleMotion()
-            : ToKernel(motion->second, surface->Origin));
-      }
-      if (isPerVertex)
-      {
-        AddPerVertexTargets(arrays, session.Problem, motions, targets);
-      }
-      this->ConfigureDeformer(*session.Deformer, context.Part(0.5, 0.8));
-      const double ready = vtkTimerLog::GetUniversalTime();
-      const int factorizations = session.Deformer->GetNumberOfFactorizations();
-      session.Deformer->Deform(targets,
-        this->GenerateFrameChange || this->GenerateRotationVector || this->NeedsTransforms(),
-        session.Result, context.Part(0.8, 0.95));
-      this->State->Factorizations += session.Deformer->GetNumberOfFactorizations() - factorizations;
-      cartan::Warn(this, session.Deformer->GetWarning());
-
-      cartan::WriteSurface(*surface, session.Result.Positions, input, output, context);
-      AddTransformArrays(
-        session.Result, this->GenerateFrameChange, this->GenerateRotationVector, output);
-      this->DecorateOutput(
-        session.Problem, *session.Deformer, session.Result, output, context.Part(0.95, 1.0));
-      this->State->FreePoints = session.Deformer->GetNumberOfFreeVertices();
-      this->State->SetupTime = ready - start;
-      this->State->MotionTime = vtkTimerLog::GetUniversalTime() - ready;
+std::shared_ptr<cartan::HandleArrays> vtkSurfaceDeformation::KeepHandleArrays(
+  cartan::FilterRun& run, const cartan::Surface& surface, const cartan::Handles& handles,
+  cartan::ContentKey key) const
+{
+  const cartan::HandleArrayNames names{ this->TargetPositionArrayName,
+    this->RotationVectorArrayName, this->TransformArrayName };
+  if (names.AreEmpty())
+  {
+    return std::make_shared<cartan::HandleArrays>();
+  }
+  for (const std::string& name : { names.Positions, names.RotationVectors, names.Transforms })
+  {
+    key.Add(name);
+    key.Add(cartan::KeyOfPointArray(run.Input(), name).GetValue());
+  }
+  return run.Keep<cartan::HandleArrays>(key,
+    [&]
+    {
+      return std::make_unique<cartan::HandleArrays>(
+        cartan::ReadHandleArrays(run.Input(), surface, handles, names));
     });
 }

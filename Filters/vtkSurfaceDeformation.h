@@ -3,23 +3,21 @@
  * @class vtkSurfaceDeformation
  * @brief base of the filters that deform a surface by moving handles
  *
- * A *handle* is a set of points that the user holds. The integer point array
- * `Handle` (see HandleArrayName and vtkMarkHandle) says which points: 0 is
- * free, k >= 1 belongs to handle k. Each handle follows its vtkHandleMotion; a
- * handle without one keeps its place, and that is how a part is pinned. The
- * free points between follow by the method of the concrete class. Free points
- * that no moving handle reaches through free points stay where they are and
- * cost nothing.
+ * A *handle* is a set of points that the user fixes or moves. In the integer
+ * point array `Handle` (see HandleArrayName and vtkMarkHandle), 0 is a free
+ * point and k >= 1 a point of handle k. Each handle follows its
+ * vtkHandleMotion; a handle without one is pinned. The method of the concrete
+ * class computes the free points. Free points that are separated from all
+ * moving handles by pinned points stay in place and cost no time.
  *
- * Triangles are used as they are, other polygons are triangulated inside; the
- * output keeps the input's cells, its precision, all its attributes and its
- * points in no triangle. Point and cell normals, if present, are updated.
+ * Polygons with more than three corners are triangulated internally; the output
+ * keeps the input's cells, its precision, all its attributes and its points in
+ * no triangle. Point and cell normals, if present, are updated.
  *
  * What depends only on the surface, the weights and the set of handle points is
  * computed once and kept, for each block of a composite input too: moving a
- * handle that moved before factorizes nothing. A motion that is present counts
- * as moving even while it is the identity, so the first drag is as fast as the
- * next.
+ * handle again needs no factorization. A handle with a motion counts as moving
+ * even if the motion is the identity, so the first drag is as fast as the next.
  *
  * Arrays on request: `FrameChange` (GenerateFrameChange), `RotationVector`
  * (GenerateRotationVector).
@@ -27,37 +25,39 @@
  * Errors, each with an empty output: no triangles, points that are not finite,
  * edges or points that are not manifold, inconsistent orientation (the message
  * says how many and which); no handle array, or one that is not made of whole
- * numbers >= 0; a motion for a handle that no point has, or that is no map;
- * arrays of the wrong size or with NaN; a connected part that no handle holds.
+ * numbers >= 0; a motion for a handle without points, or an invalid motion;
+ * arrays of the wrong size or with NaN; a component without a handle.
  *
  * @sa vtkMarkHandle vtkHandleMotion vtkRotationInvariantDeformation
  */
 #ifndef vtkSurfaceDeformation_h
 #define vtkSurfaceDeformation_h
 
-#include "vtkCartanModule.h" // For the export macro
-
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkSurfaceFilter.h"
 
 #include <memory> // For the private state
 #include <string> // For array names
+#include <vector> // For handle ids
 
 class vtkHandleMotion;
 class vtkPolyData;
 
 namespace cartan
 {
+class ContentKey;
 class ExecutionContext;
-class SurfaceDeformer;
 enum class SolverBackend;
-struct DeformedSurface;
+struct DeformationMethod;
+struct HandleArrays;
 struct HandleProblem;
+struct Handles;
+struct Surface;
 }
 
-class VTKCARTAN_EXPORT vtkSurfaceDeformation : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkSurfaceDeformation : public vtkSurfaceFilter
 {
 public:
-  vtkTypeMacro(vtkSurfaceDeformation, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkSurfaceDeformation, vtkSurfaceFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   vtkSurfaceDeformation(const vtkSurfaceDeformation&) = delete;
@@ -68,14 +68,15 @@ public:
    * The point array that says which handle a point belongs to, one whole number
    * >= 0 per point. Default: "Handle".
    */
-  void SetHandleArrayName(const std::string& name);
+  void SetHandleArrayName(const std::string& name) { this->SetMember(this->HandleArrayName, name); }
   std::string GetHandleArrayName() const { return this->HandleArrayName; }
   ///@}
 
   ///@{
   /**
-   * The motion of handle `id` >= 1, from its place in the input. The object is
-   * held: changing it modifies this filter. Setting nullptr removes it.
+   * The motion of handle `id` >= 1, from its place in the input. The filter
+   * keeps a reference: changing the object modifies this filter. Setting
+   * nullptr removes it.
    */
   void SetHandleMotion(int id, vtkHandleMotion* motion);
   vtkHandleMotion* GetHandleMotion(int id) const;
@@ -85,9 +86,10 @@ public:
 
   ///@{
   /**
-   * The same for user interfaces that have one motion at hand: ActiveMotion is
-   * the motion of handle ActiveHandle, for which it replaces one that was set
-   * with SetHandleMotion. Default: handle 1, no motion.
+   * The same for user interfaces that edit one motion at a time: ActiveMotion
+   * is the motion of handle ActiveHandle while both are set, in place of one
+   * that was set with SetHandleMotion. Other handles keep their motions,
+   * whichever is active. Default: handle 1, no motion.
    */
   void SetActiveHandle(int id);
   vtkGetMacro(ActiveHandle, int);
@@ -100,7 +102,7 @@ public:
    * A table of further motions, a row of 14 numbers for each: handle id; scale
    * x, y, z; angle in degrees; axis x, y, z; center x, y, z; translation x, y,
    * z, as in vtkHandleMotion's axis-angle mode. Rows serve user interfaces;
-   * a row's handle must have no other motion.
+   * a row's handle must have no other motion. At most 100000 rows.
    */
   void SetNumberOfMotionRows(int count);
   int GetNumberOfMotionRows() const;
@@ -111,8 +113,8 @@ public:
 
   ///@{
   /**
-   * Whether handles are held in position. Off: the frames of a moving handle
-   * follow its motion and the surface finds its place from the pinned handles
+   * Whether the positions of moving handles are fixed. Off: only the frames of
+   * a moving handle follow its motion; positions follow from the pinned handles
    * alone, as in Lipman et al., Volume and Shape Preservation via Moving Frame
    * Manipulation, 2007. Default: on.
    */
@@ -127,44 +129,56 @@ public:
    * points; they are read at the points of handles that have no
    * vtkHandleMotion. Empty names (the default) are not used.
    *
-   * - TargetPositionArrayName: 3 components, where the point goes, in length
-   *   units.
+   * - TargetPositionArrayName: 3 components, the target position of the point,
+   *   in length units.
    * - RotationVectorArrayName: 3 components, axis times angle in radians; the
    *   length may exceed 2 pi.
-   * - TransformArrayName: 9 components, a 3 x 3 matrix row by row that the
-   *   point's neighborhood is to go through. Not together with rotation
+   * - TransformArrayName: 9 components, a 3 x 3 matrix row by row that
+   *   transforms the point's neighborhood. Cannot be combined with rotation
    *   vectors.
    *
-   * A handle all of whose points keep position and orientation is pinned.
+   * A handle is pinned if all its points keep position and orientation.
    */
-  void SetTargetPositionArrayName(const std::string& name);
+  void SetTargetPositionArrayName(const std::string& name)
+  {
+    this->SetMember(this->TargetPositionArrayName, name);
+  }
   std::string GetTargetPositionArrayName() const { return this->TargetPositionArrayName; }
-  void SetRotationVectorArrayName(const std::string& name);
+  void SetRotationVectorArrayName(const std::string& name)
+  {
+    this->SetMember(this->RotationVectorArrayName, name);
+  }
   std::string GetRotationVectorArrayName() const { return this->RotationVectorArrayName; }
-  void SetTransformArrayName(const std::string& name);
+  void SetTransformArrayName(const std::string& name)
+  {
+    this->SetMember(this->TransformArrayName, name);
+  }
   std::string GetTransformArrayName() const { return this->TransformArrayName; }
   ///@}
 
   ///@{
   /**
    * A point array of soft constraint weights w >= 0, read at handle points:
-   * infinity holds exactly, 0 does not hold, between them w^2 times the squared
-   * distance from the target joins the sum of squared residuals over both
-   * directions of each edge. Empty (the default): all handle points are held
-   * exactly.
+   * infinity fixes a point exactly, 0 leaves it free; other weights w add w^2
+   * times the squared distance from the target to the sum of squared residuals
+   * over both directions of each edge. Empty (the default): all handle points
+   * are fixed exactly.
    */
-  void SetConstraintWeightArrayName(const std::string& name);
+  void SetConstraintWeightArrayName(const std::string& name)
+  {
+    this->SetMember(this->ConstraintWeightArrayName, name);
+  }
   std::string GetConstraintWeightArrayName() const { return this->ConstraintWeightArrayName; }
   ///@}
 
   ///@{
   /**
    * On: a finite weight w adds w^2 times the *mean* squared distance along the
-   * handle's curve (the handle itself where it is a line of points, its border
-   * where it is a region, whose inside then follows freely), so that with
-   * cotangent LaplacianWeights it means the same on a coarse and on a fine mesh.
-   * Off: it adds that of every point, as in Lipman et al., Volume and Shape
-   * Preservation via Moving Frame Manipulation, 2007. Default: off.
+   * handle's curve (a line of points, or the border of a region, whose inside
+   * is then free), so that with cotangent LaplacianWeights it has the same
+   * effect on a coarse and on a fine mesh. Off: it adds w^2 times the squared
+   * distance of every point, as in Lipman et al., Volume and Shape Preservation
+   * via Moving Frame Manipulation, 2007. Default: off.
    */
   vtkSetMacro(ScaleConstraintWeights, bool);
   vtkGetMacro(ScaleConstraintWeights, bool);
@@ -180,11 +194,11 @@ public:
 
   ///@{
   /**
-   * How much an edge counts. UNIFORM: all alike, the papers' choice; misplaces
-   * the deformation where triangles differ in size. COTANGENT: the finite
-   * element weights, which see the surface rather than its triangulation.
-   * MEAN_VALUE: like cotangent, but never negative (the symmetric part is
-   * used). Default: COTANGENT.
+   * The weight of each edge. UNIFORM: all edges count the same, the papers'
+   * choice; misplaces the deformation where triangles differ in size.
+   * COTANGENT: the finite element weights; the result depends on the surface
+   * rather than on its triangulation. MEAN_VALUE: like cotangent, but never
+   * negative (the symmetric part is used). Default: COTANGENT.
    */
   vtkSetClampMacro(LaplacianWeights, int, UNIFORM, MEAN_VALUE);
   vtkGetMacro(LaplacianWeights, int);
@@ -234,21 +248,22 @@ public:
   ///@}
 
   /**
-   * How many times this filter has factorized a matrix in its life.
+   * The number of matrices that this filter has factorized since it was
+   * created.
    */
   int GetNumberOfFactorizations() const;
 
   /**
-   * The points that the last update solved for; of a composite input, those of
-   * the last block.
+   * The number of free points that the last update computed; of a composite
+   * input, those of the last block.
    */
   int GetNumberOfFreePoints() const;
 
   ///@{
   /**
-   * Wall-clock seconds of the last update: to check and prepare what is kept
-   * between motions (next to nothing if nothing changed), and for the motion
-   * itself with the writing of the output.
+   * Wall-clock seconds of the last update: for checks and for what is kept
+   * between motions (negligible if nothing changed), and for the motion itself
+   * with the writing of the output.
    */
   double GetSetupTime() const;
   double GetMotionTime() const;
@@ -258,7 +273,7 @@ public:
    * A box around the points of handle ActiveHandle in the input as it is now,
    * (xmin, xmax, ymin, ymax, zmin, zmax), for a widget that moves the handle: a
    * little larger than the handle, and no side shorter than a tenth of the
-   * longest, so that flat handles can be grasped too. Around all points if none
+   * longest, so that flat handles can be grabbed too. Around all points if none
    * belongs to the handle; the unit cube without input.
    */
   double* GetActiveHandleBounds() VTK_SIZEHINT(6);
@@ -272,44 +287,34 @@ protected:
   vtkSurfaceDeformation();
   ~vtkSurfaceDeformation() override;
 
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
+  void Execute(cartan::FilterRun& run) override;
+  void ForgetResults() override;
 
   /**
-   * A deformer for the problem: what survives from one motion to the next.
-   * Throws cartan::Error.
+   * The method for a problem: what survives from one motion to the next. Throws
+   * cartan::Error.
    */
-  virtual std::unique_ptr<cartan::SurfaceDeformer> NewDeformer(const cartan::HandleProblem& problem,
+  virtual cartan::DeformationMethod NewMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) = 0;
 
   /**
-   * Hands over the parameters that may change from one motion to the next.
-   * Throws cartan::Error.
+   * Adds all parameters that NewMethod depends on.
    */
-  virtual void ConfigureDeformer(
-    cartan::SurfaceDeformer& deformer, const cartan::ExecutionContext& context) = 0;
+  virtual void AddSettings(cartan::ContentKey& settings) const;
 
   /**
-   * Whether DecorateOutput needs the transforms.
+   * Whether the method's arrays need the transforms.
    */
   virtual bool NeedsTransforms() const { return false; }
-
-  /**
-   * Adds the arrays of the concrete method. Throws cartan::Error.
-   */
-  virtual void DecorateOutput(const cartan::HandleProblem& problem,
-    cartan::SurfaceDeformer& deformer, const cartan::DeformedSurface& result, vtkPolyData* output,
-    const cartan::ExecutionContext& context);
-
-  /**
-   * For the setters of parameters that go into NewDeformer.
-   */
-  void ForgetDeformers();
 
 private:
   class Internals;
 
-  void SetName(std::string& member, const std::string& name);
+  cartan::HandleProblem MakeProblem(vtkPolyData* input,
+    const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
+    std::vector<int> moving) const;
+  std::shared_ptr<cartan::HandleArrays> KeepHandleArrays(cartan::FilterRun& run,
+    const cartan::Surface& surface, const cartan::Handles& handles, cartan::ContentKey key) const;
 
   std::unique_ptr<Internals> State;
   std::string HandleArrayName = "Handle";

@@ -1,32 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceMorph.h"
 
+#include "Bridge/FilterRun.h"
+#include "Bridge/KeyFrameMorph.h"
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/LinearMorph.h"
-#include "Kernel/Morph/MorphVolume.h"
-#include "Kernel/Morph/RigidPlacement.h"
 #include "Kernel/Morph/TriangleGradientMorph.h"
-#include "SurfacePair.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkDataArray.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkTimerLog.h"
 #include "vtkWeakPointer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
-#include <vector>
 
 vtkStandardNewMacro(vtkSurfaceMorph);
 
@@ -67,94 +61,11 @@ bool IsBlockOf(vtkCompositeDataSet* composite, vtkPolyData* surface)
   return isFound;
 }
 
-/// Floating-point arrays that all have, but for normals.
-void InterpolatePointData(const std::vector<vtkPolyData*>& keys,
-  const std::vector<double>& parameters, double t, vtkPolyData* output,
-  const cartan::ExecutionContext& context)
-{
-  vtkPointData* first = keys.front()->GetPointData();
-  for (int index = 0; index < first->GetNumberOfArrays(); ++index)
-  {
-    vtkDataArray* array = first->GetArray(index);
-    if (!array || !array->GetName() || array == first->GetNormals() ||
-      (array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE))
-    {
-      continue;
-    }
-    const vtkIdType values = array->GetNumberOfValues();
-    const int components = array->GetNumberOfComponents();
-    cartan::Field columns(values, keys.size());
-    bool haveAll = true;
-    for (std::size_t k = 0; k < keys.size() && haveAll; ++k)
-    {
-      vtkDataArray* other = keys[k]->GetPointData()->GetArray(array->GetName());
-      haveAll = other && other->GetNumberOfComponents() == components &&
-        other->GetNumberOfValues() == values;
-      for (vtkIdType i = 0; haveAll && i < values; ++i)
-      {
-        columns(i, static_cast<Eigen::Index>(k)) =
-          other->GetComponent(i / components, static_cast<int>(i % components));
-      }
-    }
-    if (!haveAll)
-    {
-      continue;
-    }
-    const Eigen::VectorXd result =
-      cartan::KeyInterpolation(parameters, std::move(columns)).Evaluate(t, context);
-    auto interpolated = vtk::TakeSmartPointer(array->NewInstance());
-    interpolated->SetName(array->GetName());
-    interpolated->SetNumberOfComponents(components);
-    interpolated->SetNumberOfTuples(array->GetNumberOfTuples());
-    for (int c = 0; c < components; ++c)
-    {
-      if (array->GetComponentName(c))
-      {
-        interpolated->SetComponentName(c, array->GetComponentName(c));
-      }
-    }
-    for (vtkIdType i = 0; i < values; ++i)
-    {
-      interpolated->SetComponent(i / components, static_cast<int>(i % components), result[i]);
-    }
-    output->GetPointData()->AddArray(interpolated);
-  }
-}
-
-/// Which points of the first key frame are in a handle. Throws if none is.
-std::vector<char> ReadPinned(vtkPolyData* first, const std::string& name)
-{
-  vtkDataArray* array = cartan::RequirePointArray(first, name, 1);
-  std::vector<char> isPinned(first->GetNumberOfPoints());
-  for (std::size_t v = 0; v < isPinned.size(); ++v)
-  {
-    isPinned[v] = array->GetComponent(static_cast<vtkIdType>(v), 0) > 0;
-  }
-  if (std::find(isPinned.begin(), isPinned.end(), 1) == isPinned.end())
-  {
-    throw Error(ErrorCode::BadInput,
-      "No point of the first key frame has a value above 0 in \"" + name +
-        "\": mark the points to pin (Mark Handle), or place by rigid interpolation.");
-  }
-  return isPinned;
-}
 }
 
 class vtkSurfaceMorph::Internals
 {
 public:
-  /// Everything that is kept while the key frames and the method are the same.
-  struct Session
-  {
-    std::vector<cartan::Surface::Source> ReadFrom;
-    std::tuple<int, int, int, int, int> Settings;
-    cartan::Surface First;  ///< with the triangles that all key frames use
-    cartan::KeyFrames Keys; ///< about the origin of First
-    std::unique_ptr<cartan::SurfaceMorph> Morph;
-    std::unique_ptr<cartan::MorphVolume> Volume; ///< once it is needed
-  };
-  Session Current;
-
   /// Of one input: its time steps, and those of the surfaces there that are in use.
   std::vector<double> Times;
   std::map<int, vtkSmartPointer<vtkPolyData>> Steps;
@@ -166,6 +77,9 @@ public:
 
   /// Where the key frames are in [0, 1].
   std::vector<double> Parameters;
+
+  /// The key frames around the parameter that is asked for.
+  cartan::KeySurfaces Keys;
 
   double ToTime(double parameter) const
   {
@@ -181,17 +95,17 @@ public:
     return std::clamp(parameter, 0.0, 1.0);
   }
 
-  bool Serves(const std::vector<vtkPolyData*>& keys, const std::vector<double>& parameters,
-    const std::tuple<int, int, int, int, int>& settings) const
+  /// The first time step that is not after the one before it; 0 if all are.
+  std::size_t FirstOutOfOrder() const
   {
-    const Session& session = this->Current;
-    bool isSame = session.Morph && session.Settings == settings &&
-      session.Keys.Parameters == parameters && session.ReadFrom.size() == keys.size();
-    for (std::size_t k = 0; isSame && k < keys.size(); ++k)
+    for (std::size_t k = 1; k < this->Times.size(); ++k)
     {
-      isSame = cartan::IsSameSurface(session.ReadFrom[k], keys[k]);
+      if (!(this->Times[k] > this->Times[k - 1]))
+      {
+        return k;
+      }
     }
-    return isSame;
+    return 0;
   }
 
   /// The first time step of the window that is not there; -1 if none.
@@ -214,15 +128,6 @@ vtkSurfaceMorph::vtkSurfaceMorph()
 }
 
 vtkSurfaceMorph::~vtkSurfaceMorph() = default;
-
-void vtkSurfaceMorph::SetHandleArrayName(const std::string& name)
-{
-  if (this->HandleArrayName != name)
-  {
-    this->HandleArrayName = name;
-    this->Modified();
-  }
-}
 
 int vtkSurfaceMorph::FillInputPortInformation(int port, vtkInformation* info)
 {
@@ -269,7 +174,7 @@ int vtkSurfaceMorph::RequestInformation(
   vtkInformation* info = outputVector->GetInformationObject(0);
   info->Remove(Pipeline::TIME_STEPS());
   info->Remove(Pipeline::TIME_RANGE());
-  if (this->FollowTime && state.Parameters.size() > 1)
+  if (this->FollowTime && state.Parameters.size() > 1 && !state.FirstOutOfOrder())
   {
     std::vector<double> steps;
     for (std::size_t k = 0; k + 1 < state.Parameters.size(); ++k)
@@ -312,7 +217,8 @@ int vtkSurfaceMorph::RequestUpdateExtent(
   }
   if (!state.Times.empty())
   {
-    const double t = this->RequestedParameter(outputVector->GetInformationObject(0));
+    const double requested = this->RequestedParameter(outputVector->GetInformationObject(0));
+    const double t = std::isfinite(requested) ? requested : 0.0; // Execute() refuses it
     const int missing = state.NextMissing(WindowAt(t, state.Parameters));
     // With all there, what was asked for last costs the input nothing.
     state.Requested = missing >= 0 ? missing : state.Requested;
@@ -322,76 +228,131 @@ int vtkSurfaceMorph::RequestUpdateExtent(
   return 1;
 }
 
+bool vtkSurfaceMorph::AcceptsEmptyInput() const
+{
+  return this->State->Parameters.size() < 2;
+}
+
+void vtkSurfaceMorph::ForgetResults()
+{
+  this->NumberOfIterations = 0;
+  this->SetupTime = 0.0;
+  this->EvaluationTime = 0.0;
+}
+
 int vtkSurfaceMorph::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  Internals& state = *this->State;
-  vtkInformation* outputInfo = outputVector->GetInformationObject(0);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  const double t = this->RequestedParameter(outputInfo);
-  const std::pair<int, int> window = WindowAt(t, state.Parameters);
-
   request->Remove(Pipeline::CONTINUE_EXECUTING());
-  const int isDone = cartan::RunGuarded(this,
-    [&]
-    {
-      this->NumberOfKeyFrames = static_cast<int>(state.Parameters.size());
-      if (IsBlockOf(state.Composite, vtkPolyData::GetData(inputVector[0])))
-      {
-        throw Error(ErrorCode::BadInput,
-          "The input is a composite data set: give its surfaces one by one (Extract Block), or as "
-          "one (Merge Blocks, then Extract Surface).");
-      }
-      if (state.Parameters.size() < 2)
-      {
-        throw Error(ErrorCode::BadInput,
-          "There is one key frame only: give two surfaces or more, or one with time steps.");
-      }
-      std::vector<vtkPolyData*> keys;
-      std::vector<std::string> roles;
-      std::vector<double> parameters(
-        state.Parameters.begin() + window.first, state.Parameters.begin() + window.second);
-      if (!state.Times.empty())
-      {
-        auto step = vtkSmartPointer<vtkPolyData>::New();
-        step->ShallowCopy(vtkPolyData::GetData(inputVector[0]));
-        state.Steps[state.Requested] = step;
-        if (state.NextMissing(window) >= 0)
-        {
-          request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
-          return;
-        }
-        for (auto entry = state.Steps.begin(); entry != state.Steps.end();)
-        {
-          const bool isUsed = entry->first >= window.first && entry->first < window.second;
-          entry = isUsed ? std::next(entry) : state.Steps.erase(entry);
-        }
-      }
-      for (int k = window.first; k < window.second; ++k)
-      {
-        keys.push_back(
-          state.Times.empty() ? vtkPolyData::GetData(inputVector[0], k) : state.Steps.at(k).Get());
-        roles.push_back("key frame " + std::to_string(k) +
-          (state.Times.empty() ? "" : " (time " + std::to_string(state.Times[k]) + ")"));
-      }
-      this->Morph(keys, roles, parameters, t, output);
-    });
-  if (!isDone)
+  const int result = this->Superclass::RequestData(request, inputVector, outputVector);
+  this->State->Keys = {};
+  if (this->GetErrorCode())
   {
-    state.Steps.clear();
-    return 0;
+    this->State->Steps.clear();
   }
-  if (!request->Has(Pipeline::CONTINUE_EXECUTING()))
+  else if (!request->Has(Pipeline::CONTINUE_EXECUTING()))
   {
-    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(),
-      outputInfo->Has(Pipeline::UPDATE_TIME_STEP()) ? outputInfo->Get(Pipeline::UPDATE_TIME_STEP())
-                                                    : state.ToTime(t));
+    vtkInformation* info = outputVector->GetInformationObject(0);
+    vtkPolyData::GetData(info)->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(),
+      info->Has(Pipeline::UPDATE_TIME_STEP())
+        ? info->Get(Pipeline::UPDATE_TIME_STEP())
+        : this->State->ToTime(this->RequestedParameter(info)));
   }
-  return 1;
+  return result;
 }
 
-void vtkSurfaceMorph::Prepare(const std::vector<vtkPolyData*>& keys,
-  const std::vector<std::string>& roles, const std::vector<double>& parameters)
+void vtkSurfaceMorph::RequireKeyFrames(cartan::FilterRun& run) const
+{
+  const Internals& state = *this->State;
+  if (IsBlockOf(state.Composite, run.Input()))
+  {
+    throw Error(ErrorCode::BadInput,
+      "The input is a composite data set: give its surfaces one by one (Extract Block), or as "
+      "one "
+      "(Merge Blocks, then Extract Surface).");
+  }
+  if (state.Parameters.size() < 2)
+  {
+    throw Error(ErrorCode::BadInput,
+      "There is one key frame only: give two surfaces or more, or one with time steps.");
+  }
+  if (const std::size_t k = state.FirstOutOfOrder())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The times of the input do not increase: time step " + std::to_string(k) + " is at " +
+        std::to_string(state.Times[k]) + " after " + std::to_string(state.Times[k - 1]) +
+        ". Give each time once, in increasing order.");
+  }
+}
+
+/// Returns whether all key frames around t are there; else the pipeline is asked
+/// for the next one.
+bool vtkSurfaceMorph::CollectKeyFrames(cartan::FilterRun& run, double t)
+{
+  Internals& state = *this->State;
+  const std::pair<int, int> window = WindowAt(t, state.Parameters);
+  const bool hasTimes = !state.Times.empty();
+  if (hasTimes)
+  {
+    auto step = vtkSmartPointer<vtkPolyData>::New();
+    step->ShallowCopy(run.Input());
+    state.Steps[state.Requested] = step;
+    if (state.NextMissing(window) >= 0)
+    {
+      run.Request()->Set(Pipeline::CONTINUE_EXECUTING(), 1);
+      return false;
+    }
+    for (auto entry = state.Steps.begin(); entry != state.Steps.end();)
+    {
+      const bool isUsed = entry->first >= window.first && entry->first < window.second;
+      entry = isUsed ? std::next(entry) : state.Steps.erase(entry);
+    }
+  }
+  state.Keys = {};
+  state.Keys.Parameters.assign(
+    state.Parameters.begin() + window.first, state.Parameters.begin() + window.second);
+  for (int k = window.first; k < window.second; ++k)
+  {
+    state.Keys.Surfaces.push_back(hasTimes ? state.Steps.at(k).Get() : run.Input(0, k));
+    state.Keys.Roles.push_back("key frame " + std::to_string(k) +
+      (hasTimes ? " (time " + std::to_string(state.Times[k]) + ")" : ""));
+  }
+  return true;
+}
+
+void vtkSurfaceMorph::Execute(cartan::FilterRun& run)
+{
+  this->NumberOfKeyFrames = static_cast<int>(this->State->Parameters.size());
+  this->RequireKeyFrames(run);
+  const double t = this->RequestedParameter(run.OutputInformation());
+  if (!std::isfinite(t))
+  {
+    throw Error(ErrorCode::BadInput, "Parameter is not a number: give one in [0, 1].");
+  }
+  if (!this->CollectKeyFrames(run, t))
+  {
+    return;
+  }
+  cartan::MorphOptions options;
+  options.NewMorph = [this](const cartan::KeyFrames& keys, const cartan::ExecutionContext& context)
+  { return this->NewMorph(keys, context); };
+  for (const int setting : { this->Method, this->TransitionInterpolation, this->FrameSolver,
+         this->Stitching, this->LengthPolish })
+  {
+    options.Settings.Add(static_cast<std::uint64_t>(setting));
+  }
+  options.NeedsPlacement = this->Method != LINEAR;
+  options.IsPinned = this->Placement == PINNED_HANDLE;
+  options.HandleArray = this->HandleArrayName;
+  options.CloseVolume = this->CloseVolume;
+  const cartan::MorphNumbers numbers = cartan::MorphAt(t, this->State->Keys, options, run);
+  this->NumberOfIterations = numbers.Iterations;
+  this->SetupTime = numbers.SetupTime;
+  this->EvaluationTime = numbers.EvaluationTime;
+}
+
+std::unique_ptr<cartan::SurfaceMorph> vtkSurfaceMorph::NewMorph(
+  const cartan::KeyFrames& keys, const cartan::ExecutionContext& context) const
 {
   static_assert(static_cast<int>(cartan::DiscreteFormsMorph::Transitions::Rotations) == ROTATIONS &&
       static_cast<int>(cartan::DiscreteFormsMorph::Transitions::Forms) == FORMS &&
@@ -404,116 +365,24 @@ void vtkSurfaceMorph::Prepare(const std::vector<vtkPolyData*>& keys,
       static_cast<int>(cartan::IsometricMorphOptions::Method::TreeStitched) == TREE &&
       static_cast<int>(cartan::IsometricMorphOptions::Method::TreeAverage) == TREE_AVERAGE,
     "the enumerations agree");
-  const std::tuple<int, int, int, int, int> settings{ this->Method, this->TransitionInterpolation,
-    this->FrameSolver, this->Stitching, this->LengthPolish };
-  this->SetupTime = 0.0;
-  if (this->State->Serves(keys, parameters, settings))
-  {
-    return;
-  }
-  const double start = vtkTimerLog::GetUniversalTime();
-  const cartan::ExecutionContext context = cartan::MakeContext(this).Part(0.0, 0.7);
-  Internals::Session session;
-  cartan::MatchedSurfaces matched = cartan::ReadMatchedSurfaces(keys, roles,
-    "Key frames need the same points and cells in the same order, such as one surface in several "
-    "poses.");
-  session.ReadFrom = matched.ReadFrom;
-  session.Settings = settings;
-  session.Keys.Mesh = std::make_shared<cartan::TriangleMesh>(matched.Mesh);
-  session.Keys.Parameters = parameters;
-  for (std::size_t k = 0; k < keys.size(); ++k)
-  {
-    matched.Positions[k].rowwise() += (matched.Origins[k] - matched.Origins[0]).transpose().eval();
-  }
-  session.Keys.Positions = std::move(matched.Positions);
-  session.First.Mesh = std::move(matched.Mesh);
-  session.First.CellIds = std::move(matched.CellIds);
-  session.First.Positions = session.Keys.Positions[0];
-  session.First.Origin = matched.Origins[0];
   switch (this->Method)
   {
     case DISCRETE_FORMS:
-      session.Morph = std::make_unique<cartan::DiscreteFormsMorph>(session.Keys,
+      return std::make_unique<cartan::DiscreteFormsMorph>(keys,
         static_cast<cartan::DiscreteFormsMorph::Transitions>(this->TransitionInterpolation),
         static_cast<cartan::DiscreteFormsMorph::FrameSolver>(this->FrameSolver), context);
-      break;
     case ISOMETRIC:
     {
       cartan::IsometricMorphOptions options;
       options.Type = static_cast<cartan::IsometricMorphOptions::Method>(this->Stitching);
       options.LengthPolish = this->LengthPolish;
-      session.Morph = std::make_unique<cartan::IsometricMorph>(session.Keys, options, context);
-      break;
+      return std::make_unique<cartan::IsometricMorph>(keys, options, context);
     }
     case DEFORMATION_GRADIENT:
-      session.Morph = std::make_unique<cartan::TriangleGradientMorph>(session.Keys, context);
-      break;
+      return std::make_unique<cartan::TriangleGradientMorph>(keys, context);
     default:
-      session.Morph = std::make_unique<cartan::LinearMorph>(session.Keys);
+      return std::make_unique<cartan::LinearMorph>(keys);
   }
-  cartan::Warn(this, matched.Warning);
-  this->State->Current = std::move(session);
-  this->SetupTime = vtkTimerLog::GetUniversalTime() - start;
-}
-
-void vtkSurfaceMorph::Morph(const std::vector<vtkPolyData*>& keys,
-  const std::vector<std::string>& roles, const std::vector<double>& parameters, double t,
-  vtkPolyData* output)
-{
-  this->Prepare(keys, roles, parameters);
-  Internals::Session& session = this->State->Current;
-  const double start = vtkTimerLog::GetUniversalTime();
-  const cartan::ExecutionContext context = cartan::MakeContext(this).Part(0.7, 1.0);
-  const cartan::KeyPlace place = cartan::PlaceBetweenKeys(t, parameters);
-  const bool isKey = place.Part == 0.0 || place.Part == 1.0;
-
-  cartan::Points positions;
-  if (isKey)
-  {
-    positions = session.Keys.Positions[place.Before + (place.Part == 1.0)];
-    this->NumberOfIterations = 0;
-  }
-  else
-  {
-    positions = session.Morph->Evaluate(t, context);
-    this->NumberOfIterations = session.Morph->GetNumberOfIterations();
-    cartan::Warn(this, session.Morph->GetWarning());
-    if (this->Method != LINEAR)
-    {
-      const Eigen::VectorXd weights = this->Placement == PINNED_HANDLE
-        ? cartan::PinWeights(session.Keys, ReadPinned(keys.front(), this->HandleArrayName))
-        : cartan::AreaWeights(session.Keys, context);
-      cartan::RigidPlacement(session.Keys, weights).Place(t, positions);
-    }
-    if (this->CloseVolume)
-    {
-      if (!session.Volume)
-      {
-        session.Volume = std::make_unique<cartan::MorphVolume>(session.Keys, context);
-        cartan::Warn(this, session.Volume->GetWarning());
-      }
-      cartan::Warn(this, session.Volume->Close(t, positions));
-    }
-  }
-  cartan::WriteSurface(session.First, positions, keys.front(), output, context);
-
-  // Key frames to the last bit; and points in no triangle, on straight lines.
-  vtkPoints* before = keys[place.Before]->GetPoints();
-  vtkPoints* after = keys[place.Before + 1]->GetPoints();
-  for (int v = 0; v < session.First.Mesh.NumberOfVertices(); ++v)
-  {
-    if (isKey || !session.First.Mesh.IsUsed(v))
-    {
-      const Eigen::Vector3d from(before->GetPoint(v));
-      const Eigen::Vector3d to(after->GetPoint(v));
-      const Eigen::Vector3d point = place.Part == 0.0 ? from
-        : place.Part == 1.0                           ? to
-                                                      : from + place.Part * (to - from);
-      output->GetPoints()->SetPoint(v, point.data());
-    }
-  }
-  InterpolatePointData(keys, parameters, t, output, context);
-  this->EvaluationTime = vtkTimerLog::GetUniversalTime() - start;
 }
 
 void vtkSurfaceMorph::PrintSelf(ostream& os, vtkIndent indent)

@@ -1,34 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSurfaceMorph
- * @brief turns surfaces of one connectivity, as key frames, into motion
+ * @brief interpolates between surfaces of the same connectivity (key frames)
  *
- * Key frames are two or more surfaces with the same points and cells: each added
- * with AddInputConnection() or AddInputData(), at even parameters from 0 to 1; or
- * the time steps of one input, which makes this a temporal interpolator for
- * surfaces that turn. In between, local shape is interpolated instead of
- * coordinates, linearly between two key frames and by monotone cubics through
- * more, so that what turns does not shrink.
+ * Key frames are two or more surfaces with the same points and cells: each
+ * added with AddInputConnection() or AddInputData(), with parameters evenly
+ * spaced from 0 to 1; or the time steps of one input, so that the filter is a
+ * temporal interpolator. Local shape is interpolated instead of coordinates,
+ * linearly between two key frames and by monotone cubics through more, so that
+ * turning parts do not shrink.
  *
- * The output is the surface at one parameter. It has time steps: over [0, 1], or
- * over those of the input, StepsBetweenKeyFrames for each pair of key frames. A
- * request for a time gives the surface then (while FollowTime is on); without
- * one, Parameter says where.
+ * The output is the surface at one parameter. It has time steps: over [0, 1],
+ * or over those of the input, StepsBetweenKeyFrames for each pair of key
+ * frames. A requested time gives the surface at that time (if FollowTime is
+ * on); without a request, Parameter determines it.
  *
  * Each component is placed where a rigid interpolation of the key frames has it,
- * so that the key frames are met exactly as given; see Placement. Floating-point
- * point data that all key frames have are interpolated, normals are computed
- * anew. Other point data, cell data, and the cells are those of the first key
- * frame, as is the precision of points.
+ * so that the key frames are met exactly as given, with their arrays; see Placement. In between,
+ * floating-point arrays of points and cells are interpolated, normals turn with
+ * the surface, and other arrays are those of the nearest key frame. An array that
+ * not all key frames around have is left out, with a warning.
  *
- * At most four key frames are used at a time, two before and two after: further
- * ones have no influence. What is computed from them is kept until they change,
- * by value.
+ * At most four key frames are used at a time, two before and two after the
+ * parameter. What is computed from them is kept until their contents change.
  *
  * Errors, each with an empty output: fewer than two key frames; key frames that
- * differ in their points' number or their cells, or are no manifolds, not
- * consistently oriented or not finite; a composite input; what the methods
- * refuse, see Method.
+ * differ in their number of points or their cells, or are not manifold, not
+ * consistently oriented or not finite; times that do not increase; a composite
+ * input; what the methods refuse, see Method.
  *
  * References: Lipman, Sorkine, Levin, Cohen-Or, Linear Rotation-invariant
  * Coordinates for Meshes, 2005, section 4.1; Bose, O'Rourke, Shu, Wuhrer,
@@ -40,19 +39,23 @@
 #ifndef vtkSurfaceMorph_h
 #define vtkSurfaceMorph_h
 
-#include "vtkCartanModule.h" // For the export macro
+#include "vtkSurfaceFilter.h"
 
-#include "vtkPolyDataAlgorithm.h"
+#include <memory> // For the private state
+#include <string> // For the array's name
 
-#include <memory>
-#include <string>
-#include <vector>
+namespace cartan
+{
+class ExecutionContext;
+class SurfaceMorph;
+struct KeyFrames;
+}
 
-class VTKCARTAN_EXPORT vtkSurfaceMorph : public vtkPolyDataAlgorithm
+class VTKCARTAN_EXPORT vtkSurfaceMorph : public vtkSurfaceFilter
 {
 public:
   static vtkSurfaceMorph* New();
-  vtkTypeMacro(vtkSurfaceMorph, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkSurfaceMorph, vtkSurfaceFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   vtkSurfaceMorph(const vtkSurfaceMorph&) = delete;
@@ -68,13 +71,14 @@ public:
 
   ///@{
   /**
-   * DISCRETE_FORMS: the one-rings of points; for any number of laps. Needs a
-   * normal at each point. ISOMETRIC: edge lengths and the angles between
-   * triangles; exactly so, and in linear time, on surfaces without inner points,
-   * such as strips. Needs edges of some length. DEFORMATION_GRADIENT: how each
-   * triangle turns and stretches; without iteration, for turns of less than a
-   * lap against the mean of the surface. Needs a triangle with area in each
-   * component. LINEAR: coordinates, to compare with. Default: DISCRETE_FORMS.
+   * What is interpolated. DISCRETE_FORMS: the one-rings of points; for any
+   * number of full turns. Needs a normal at each point. ISOMETRIC: edge lengths
+   * and the angles between triangles; exact, and in linear time, on surfaces
+   * without interior points, such as strips. Needs edges of positive length.
+   * DEFORMATION_GRADIENT: the rotation and stretch of each triangle; without
+   * iteration, for less than a full turn relative to the mean of the surface.
+   * Needs a triangle with area in each component. LINEAR: coordinates, for
+   * comparison. Default: DISCRETE_FORMS.
    */
   vtkSetClampMacro(Method, int, DISCRETE_FORMS, LINEAR);
   vtkGetMacro(Method, int);
@@ -86,9 +90,9 @@ public:
 
   ///@{
   /**
-   * Where between the first key frame, 0, and the last one, 1, the surface is
-   * wanted. Beyond, it goes on as it does at the ends, as far as lengths stay
-   * positive. Used where no time is requested or FollowTime is off. Default: 0.
+   * The place between the first key frame, 0, and the last one, 1. Values
+   * outside extrapolate as long as lengths stay positive. Used if no time is
+   * requested or FollowTime is off. Default: 0.
    */
   vtkSetMacro(Parameter, double);
   vtkGetMacro(Parameter, double);
@@ -96,8 +100,8 @@ public:
 
   ///@{
   /**
-   * Whether a time that is requested, as by an animation, takes the place of
-   * Parameter. Off: the output has no time steps. Default: on.
+   * Whether a requested time, for example of an animation, replaces Parameter.
+   * Off: the output has no time steps. Default: on.
    */
   vtkSetMacro(FollowTime, bool);
   vtkGetMacro(FollowTime, bool);
@@ -106,8 +110,7 @@ public:
 
   ///@{
   /**
-   * Into how many time steps the way from one key frame to the next is divided.
-   * Default: 10.
+   * The number of time steps from one key frame to the next. Default: 10.
    */
   vtkSetClampMacro(StepsBetweenKeyFrames, int, 1, 100000);
   vtkGetMacro(StepsBetweenKeyFrames, int);
@@ -121,14 +124,14 @@ public:
 
   ///@{
   /**
-   * RIGID_INTERPOLATION: centers of components move on a line from one key frame
-   * to the next (on a smooth path through more), and what is left of turning goes
-   * at an even rate about one axis, by less than half a turn. PINNED_HANDLE: so
-   * that the points with a value above 0 in HandleArrayName of the first key
-   * frame come to lie as well as they can, rigidly, where the interpolation has
-   * them; if all key frames agree there, they stay. Components without such
-   * points, and LINEAR, which has places of its own: as without. Default:
-   * RIGID_INTERPOLATION.
+   * How the position of each component is chosen. RIGID_INTERPOLATION: centers
+   * of components move on a line from one key frame to the next (on a smooth
+   * path through more), and the component as a whole turns at an even rate
+   * about one axis, by less than half a turn. PINNED_HANDLE: a rigid motion
+   * brings the points with a value above 0 in HandleArrayName of the first key
+   * frame as close as possible to their interpolated positions; if these points
+   * are the same in all key frames, they stay in place. It has no effect on
+   * components without such points and on LINEAR. Default: RIGID_INTERPOLATION.
    */
   vtkSetClampMacro(Placement, int, RIGID_INTERPOLATION, PINNED_HANDLE);
   vtkGetMacro(Placement, int);
@@ -140,16 +143,16 @@ public:
   /**
    * The point array that PINNED_HANDLE reads. Default: "Handle".
    */
-  void SetHandleArrayName(const std::string& name);
+  void SetHandleArrayName(const std::string& name) { this->SetMember(this->HandleArrayName, name); }
   std::string GetHandleArrayName() const { return this->HandleArrayName; }
   ///@}
 
   ///@{
   /**
-   * Closes the volume of each component on that between the key frames, by the
-   * smoothest displacement that does. Components that are open, enclose
-   * nothing, or are turned inside out against the first one in a key frame are
-   * left alone with a warning. Default: off.
+   * Gives each component the interpolated volume of the key frames, by the
+   * smoothest displacement that does so. Components that are open,
+   * enclose nothing, or are turned inside out against the first key frame are not
+   * changed and give a warning. Default: off.
    */
   vtkSetMacro(CloseVolume, bool);
   vtkGetMacro(CloseVolume, bool);
@@ -164,9 +167,10 @@ public:
 
   ///@{
   /**
-   * DISCRETE_FORMS: whether the turn from a point's frame to its neighbor's is
-   * interpolated as a rotation, or follows from the interpolated forms, as in the
-   * 2005 paper, at somewhat larger errors in lengths. Default: ROTATIONS.
+   * DISCRETE_FORMS: whether the transition from a point's frame to its
+   * neighbor's is interpolated as a rotation, or computed from the interpolated
+   * forms, as in the 2005 paper, at somewhat larger errors in lengths. Default:
+   * ROTATIONS.
    */
   vtkSetClampMacro(TransitionInterpolation, int, ROTATIONS, FORMS);
   vtkGetMacro(TransitionInterpolation, int);
@@ -183,11 +187,12 @@ public:
 
   ///@{
   /**
-   * DISCRETE_FORMS: how frames are found. ROTATION_AVERAGING: the rotations that
-   * fit best, with one factorization for all parameters. CONJUGATE_GRADIENTS,
-   * DIRECT: the 2005 paper's linear system of three unknowns per point, projected
-   * on rotations; iterated from the former, or factorized for each parameter.
-   * They agree with each other, and nearly with the former. Default:
+   * DISCRETE_FORMS: how frames are found. ROTATION_AVERAGING: the rotations
+   * that fit best, with one factorization for all parameters.
+   * CONJUGATE_GRADIENTS, DIRECT: the 2005 paper's linear system of three
+   * unknowns per point, projected on rotations; solved iteratively from the
+   * result of ROTATION_AVERAGING, or factorized for each parameter. The two
+   * agree, and differ little from ROTATION_AVERAGING. Default:
    * ROTATION_AVERAGING.
    */
   vtkSetClampMacro(FrameSolver, int, ROTATION_AVERAGING, DIRECT);
@@ -206,12 +211,12 @@ public:
 
   ///@{
   /**
-   * ISOMETRIC, on surfaces with inner points, where lengths and angles do not fit
-   * together exactly. ALL_HINGES: triangles turn so that all angles fit best, and
-   * are then stitched. TREE: they turn as along a tree through the hinges that
-   * turn least, and are then stitched. TREE_AVERAGE: the 2008 paper's; each point
-   * at the mean of the places that its triangles on the tree give it. Default:
-   * ALL_HINGES.
+   * ISOMETRIC on surfaces with interior points: how they are reconstructed,
+   * because lengths and angles do not fit together exactly. ALL_HINGES:
+   * triangles are turned so that all angles fit best, and stitched. TREE: they
+   * are turned along a tree through the hinges that turn least, and stitched.
+   * TREE_AVERAGE: the 2008 paper's method; each point is at the mean of the
+   * positions that its triangles on the tree give it. Default: ALL_HINGES.
    */
   vtkSetClampMacro(Stitching, int, ALL_HINGES, TREE_AVERAGE);
   vtkGetMacro(Stitching, int);
@@ -222,27 +227,29 @@ public:
 
   ///@{
   /**
-   * ISOMETRIC: rounds that bring edges closer to their lengths after stitching.
-   * Each factorizes a matrix of three unknowns per point. Default: 0.
+   * ISOMETRIC: the number of rounds after stitching that bring edges closer to
+   * their lengths. Each factorizes a matrix of three unknowns per point.
+   * Default: 0.
    */
   vtkSetClampMacro(LengthPolish, int, 0, 100);
   vtkGetMacro(LengthPolish, int);
   ///@}
 
   /**
-   * Steps that the last surface took to iterate; 0 where nothing is iterated.
+   * The number of iterations for the last surface; 0 for methods that do not
+   * iterate.
    */
   vtkGetMacro(NumberOfIterations, int);
 
   /**
-   * How many key frames there were, in all, at the last update.
+   * The number of key frames at the last update.
    */
   vtkGetMacro(NumberOfKeyFrames, int);
 
   ///@{
   /**
    * Seconds that the last update took to prepare the key frames (0 if they were
-   * kept) and to find the surface.
+   * kept) and to compute the surface.
    */
   vtkGetMacro(SetupTime, double);
   vtkGetMacro(EvaluationTime, double);
@@ -259,15 +266,18 @@ protected:
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  void Execute(cartan::FilterRun& run) override;
+  void ForgetResults() override;
+  bool AcceptsEmptyInput() const override;
 
 private:
   class Internals;
 
   double RequestedParameter(vtkInformation* output) const;
-  void Prepare(const std::vector<vtkPolyData*>& keys, const std::vector<std::string>& roles,
-    const std::vector<double>& parameters);
-  void Morph(const std::vector<vtkPolyData*>& keys, const std::vector<std::string>& roles,
-    const std::vector<double>& parameters, double t, vtkPolyData* output);
+  void RequireKeyFrames(cartan::FilterRun& run) const;
+  bool CollectKeyFrames(cartan::FilterRun& run, double t);
+  std::unique_ptr<cartan::SurfaceMorph> NewMorph(
+    const cartan::KeyFrames& keys, const cartan::ExecutionContext& context) const;
 
   std::unique_ptr<Internals> State;
   int Method = DISCRETE_FORMS;

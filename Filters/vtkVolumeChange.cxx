@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkVolumeChange.h"
 
+#include "Bridge/FilterRun.h"
+
+#include "Bridge/PointArrays.h"
+#include "Bridge/SurfacePair.h"
 #include "Kernel/Measure/Measures.h"
-#include "KernelBridge.h"
-#include "SurfacePair.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
-#include "vtkFieldData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -17,44 +17,11 @@
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
-#include <algorithm>
 #include <cmath>
-#include <string>
+#include <limits>
 #include <vector>
 
 vtkStandardNewMacro(vtkVolumeChange);
-
-/// The reference's local volumes with their factorization, kept while the
-/// reference stays the same.
-class vtkVolumeChange::Internals
-{
-public:
-  const cartan::LocalVolumes& Get(
-    const cartan::SurfacePair& pair, const cartan::ExecutionContext& context)
-  {
-    if (!this->Volumes || !IsEqual(this->Triangles, pair.Mesh.GetTriangles()) ||
-      !IsEqual(this->Reference, pair.Reference))
-    {
-      this->Volumes.reset();
-      this->Volumes = std::make_unique<cartan::LocalVolumes>(
-        std::make_shared<const cartan::TriangleMesh>(pair.Mesh), pair.Reference, context);
-      this->Triangles = pair.Mesh.GetTriangles();
-      this->Reference = pair.Reference;
-    }
-    return *this->Volumes;
-  }
-
-private:
-  template <typename Rows>
-  static bool IsEqual(const Rows& a, const Rows& b)
-  {
-    return a.rows() == b.rows() && a == b;
-  }
-
-  std::unique_ptr<cartan::LocalVolumes> Volumes;
-  cartan::Triangles Triangles;
-  cartan::Points Reference;
-};
 
 namespace
 {
@@ -181,55 +148,85 @@ double TotalArea(const std::vector<cartan::ComponentVolume>& components)
   return area;
 }
 
-void AddPointScalars(vtkPolyData* output, const char* name, const Eigen::VectorXd& values)
+/// What is measured before a surface is written.
+struct Changes
 {
-  cartan::AddPointArray(output, name, values.data(), values.size(), 1);
-}
+  Changes(const cartan::SurfacePair& pair, const cartan::ExecutionContext& context)
+    : ComponentsBefore(cartan::MeasureComponents(*pair.Mesh, *pair.Reference))
+    , ComponentsNow(cartan::MeasureComponents(*pair.Mesh, *pair.Current))
+    , AreasBefore(cartan::TriangleAreas(*pair.Mesh, *pair.Reference, context))
+    , AreasNow(cartan::TriangleAreas(*pair.Mesh, *pair.Current, context))
+    , Edges(cartan::CompareEdgeLengths(*pair.Mesh, *pair.Reference, *pair.Current, context))
+    , Distance(cartan::MeasureShapeDistance(*pair.Mesh, *pair.Reference, *pair.Current, context))
+  {
+  }
 
-void AddCellAreaRatio(vtkPolyData* output, const cartan::SurfacePair& pair,
-  const Eigen::VectorXd& triangleAreasBefore, const Eigen::VectorXd& triangleAreasNow)
+  std::vector<cartan::ComponentVolume> ComponentsBefore;
+  std::vector<cartan::ComponentVolume> ComponentsNow;
+  Eigen::VectorXd AreasBefore; ///< of triangles
+  Eigen::VectorXd AreasNow;
+  cartan::EdgeLengthChange Edges;
+  cartan::ShapeDistance Distance;
+};
+
+void AddCellAreaRatio(vtkPolyData* output, const cartan::SurfacePair& pair, const Changes& changes)
 {
   Eigen::VectorXd before = Eigen::VectorXd::Zero(output->GetNumberOfCells());
   Eigen::VectorXd now = before;
-  for (int t = 0; t < pair.Mesh.NumberOfTriangles(); ++t)
+  for (int t = 0; t < pair.Mesh->NumberOfTriangles(); ++t)
   {
-    before[pair.CellIds[t]] += triangleAreasBefore[t];
-    now[pair.CellIds[t]] += triangleAreasNow[t];
+    before[pair.Cells->CellIds[t]] += changes.AreasBefore[t];
+    now[pair.Cells->CellIds[t]] += changes.AreasNow[t];
   }
-  const Eigen::VectorXd ratios = cartan::Ratios(before, now);
-  vtkNew<vtkDoubleArray> array;
-  array->SetName("AreaRatio");
-  array->SetNumberOfValues(ratios.size());
-  std::copy(ratios.data(), ratios.data() + ratios.size(), array->GetPointer(0));
-  output->GetCellData()->AddArray(array);
+  cartan::AddArray(output->GetCellData(), "AreaRatio", cartan::Ratios(before, now));
 }
 
-void AddFieldValue(vtkPolyData* output, const char* name, double value)
+void AddArrays(vtkPolyData* output, const cartan::SurfacePair& pair, const Changes& changes)
 {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->InsertNextValue(value);
-  output->GetFieldData()->AddArray(array);
+  cartan::AddPointArray(output, "AreaRatio",
+    cartan::Ratios(cartan::BarycentricAreas(*pair.Mesh, changes.AreasBefore),
+      cartan::BarycentricAreas(*pair.Mesh, changes.AreasNow)));
+  cartan::AddPointArray(output, "EdgeLengthRatio", changes.Edges.VertexRatio);
+  cartan::AddPointArray(output, "ShapeDistanceDensity", changes.Distance.Density);
+  AddCellAreaRatio(output, pair, changes);
+  output->GetPointData()->SetActiveScalars("AreaRatio");
+}
+
+/// The table, and its numbers by name.
+std::map<std::string, double> FillTable(const Changes& changes, vtkTable* output)
+{
+  std::map<std::string, double> results;
+  ChangeTable table;
+  results["RelativeVolumeChange"] =
+    AddVolume(changes.ComponentsBefore, changes.ComponentsNow, table);
+  results["RelativeAreaChange"] =
+    table.Add("Area", TotalArea(changes.ComponentsBefore), TotalArea(changes.ComponentsNow));
+  const std::size_t ofNoLength = changes.Edges.ZeroLength.GetCount();
+  const std::string edgeNote = ofNoLength == 0
+    ? ""
+    : "without " + std::to_string(ofNoLength) + " edges of length zero in the reference";
+  const auto addMeasure =
+    [&](const std::string& name, double value, double change, const std::string& note)
+  {
+    results[name] = value;
+    table.Add(name, 0.0, value, change, note);
+  };
+  addMeasure("EdgeLengthRMS", changes.Edges.RootMeanSquare, changes.Edges.RootMeanSquare, edgeNote);
+  addMeasure("EdgeLengthMax", changes.Edges.Maximum, changes.Edges.Maximum, edgeNote);
+  addMeasure("ShapeDistance", changes.Distance.Total, Undefined,
+    "a distance from the reference: Current is the measure");
+  if (changes.ComponentsBefore.size() > 1)
+  {
+    AddComponents(changes.ComponentsBefore, changes.ComponentsNow, table);
+  }
+  table.MoveTo(output);
+  return results;
 }
 }
 
 vtkVolumeChange::vtkVolumeChange()
-  : Internal(std::make_unique<Internals>())
 {
-  this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
-}
-
-vtkVolumeChange::~vtkVolumeChange() = default;
-
-void vtkVolumeChange::SetReferenceConnection(vtkAlgorithmOutput* reference)
-{
-  this->SetInputConnection(1, reference);
-}
-
-void vtkVolumeChange::SetReferenceData(vtkPolyData* reference)
-{
-  this->SetInputData(1, reference);
 }
 
 vtkTable* vtkVolumeChange::GetChangeTable()
@@ -237,109 +234,48 @@ vtkTable* vtkVolumeChange::GetChangeTable()
   return vtkTable::SafeDownCast(this->GetOutputDataObject(1));
 }
 
-int vtkVolumeChange::FillInputPortInformation(int port, vtkInformation* info)
+double vtkVolumeChange::GetResult(const std::string& name) const
 {
-  if (port == 1)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-    return 1;
-  }
-  return this->Superclass::FillInputPortInformation(port, info);
+  const auto found = this->Results.find(name);
+  return found == this->Results.end() ? Undefined : found->second;
 }
 
 int vtkVolumeChange::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  if (port == 1)
+  return port == 1 ? SetOutputType(info, "vtkTable")
+                   : this->Superclass::FillOutputPortInformation(port, info);
+}
+
+void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun& run)
+{
+  const Changes changes(pair, run.Context());
+  vtkPolyData* output = run.Output();
+  if (this->ComputeLocalVolume)
   {
-    info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
-    return 1;
+    const auto volumes = run.Keep<cartan::LocalVolumes>(pair.ReferenceKey,
+      [&]
+      {
+        return std::make_unique<cartan::LocalVolumes>(
+          pair.Mesh, *pair.Reference, run.Context().Part(0.1, 0.8));
+      });
+    const Eigen::VectorXd localVolume =
+      volumes->Measure(*pair.Current, run.Context().Part(0.8, 1.0));
+    cartan::AddPointArray(output, "LocalVolume", localVolume);
+    cartan::AddPointArray(
+      output, "LocalVolumeRatio", cartan::Ratios(volumes->GetReference(), localVolume));
   }
-  return this->Superclass::FillOutputPortInformation(port, info);
-}
-
-void vtkVolumeChange::ForgetResults()
-{
-  this->RelativeVolumeChange = Undefined;
-  this->RelativeAreaChange = Undefined;
-  this->EdgeLengthRMS = Undefined;
-  this->EdgeLengthMax = Undefined;
-  this->ShapeDistance = Undefined;
-}
-
-int vtkVolumeChange::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* reference = vtkPolyData::GetData(inputVector[1]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
-  vtkTable* outputTable = vtkTable::GetData(outputVector, 1);
-  this->ForgetResults();
-
-  return cartan::RunGuarded(this,
-    [&]
-    {
-      const cartan::SurfacePair pair = cartan::ReadSurfacePair(input, reference);
-      cartan::Warn(this, pair.Warning);
-      const cartan::ExecutionContext context = cartan::MakeContext(this);
-
-      const cartan::TriangleMesh& mesh = pair.Mesh;
-      const auto componentsBefore = cartan::MeasureComponents(mesh, pair.Reference);
-      const auto componentsNow = cartan::MeasureComponents(mesh, pair.Current);
-      const Eigen::VectorXd areasBefore = cartan::TriangleAreas(mesh, pair.Reference, context);
-      const Eigen::VectorXd areasNow = cartan::TriangleAreas(mesh, pair.Current, context);
-      const cartan::EdgeLengthChange edges =
-        cartan::CompareEdgeLengths(mesh, pair.Reference, pair.Current, context);
-      const cartan::ShapeDistance distance =
-        cartan::MeasureShapeDistance(mesh, pair.Reference, pair.Current, context);
-
-      output->ShallowCopy(input);
-      if (this->ComputeLocalVolume)
-      {
-        const cartan::LocalVolumes& volumes = this->Internal->Get(pair, context.Part(0.1, 0.8));
-        const Eigen::VectorXd localVolume = volumes.Measure(pair.Current, context.Part(0.8, 1.0));
-        AddPointScalars(output, "LocalVolume", localVolume);
-        AddPointScalars(
-          output, "LocalVolumeRatio", cartan::Ratios(volumes.GetReference(), localVolume));
-      }
-      AddPointScalars(output, "AreaRatio",
-        cartan::Ratios(
-          cartan::BarycentricAreas(mesh, areasBefore), cartan::BarycentricAreas(mesh, areasNow)));
-      AddPointScalars(output, "EdgeLengthRatio", edges.VertexRatio);
-      AddPointScalars(output, "ShapeDistanceDensity", distance.Density);
-      AddCellAreaRatio(output, pair, areasBefore, areasNow);
-
-      ChangeTable table;
-      this->RelativeVolumeChange = AddVolume(componentsBefore, componentsNow, table);
-      this->RelativeAreaChange =
-        table.Add("Area", TotalArea(componentsBefore), TotalArea(componentsNow));
-      const std::string edgeNote = edges.ZeroLength.IsEmpty() ? ""
-                                                              : "without " +
-          std::to_string(edges.ZeroLength.GetCount()) + " edges of length zero in the reference";
-      this->EdgeLengthRMS = edges.RootMeanSquare;
-      this->EdgeLengthMax = edges.Maximum;
-      table.Add("EdgeLengthRMS", 0.0, edges.RootMeanSquare, edges.RootMeanSquare, edgeNote);
-      table.Add("EdgeLengthMax", 0.0, edges.Maximum, edges.Maximum, edgeNote);
-      this->ShapeDistance = distance.Total;
-      table.Add("ShapeDistance", 0.0, distance.Total, Undefined,
-        "a distance from the reference: Current is the measure");
-      if (componentsBefore.size() > 1)
-      {
-        AddComponents(componentsBefore, componentsNow, table);
-      }
-      table.MoveTo(outputTable);
-      output->GetPointData()->SetActiveScalars("AreaRatio");
-      AddFieldValue(output, "RelativeVolumeChange", this->RelativeVolumeChange);
-      AddFieldValue(output, "ShapeDistance", this->ShapeDistance);
-    });
+  AddArrays(output, pair, changes);
+  this->Results = FillTable(changes, run.OutputTable(1));
+  cartan::AddFieldValue(output, "RelativeVolumeChange", this->GetRelativeVolumeChange());
+  cartan::AddFieldValue(output, "ShapeDistance", this->GetShapeDistance());
 }
 
 void vtkVolumeChange::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ComputeLocalVolume: " << this->ComputeLocalVolume << "\n";
-  os << indent << "RelativeVolumeChange: " << this->RelativeVolumeChange << "\n";
-  os << indent << "RelativeAreaChange: " << this->RelativeAreaChange << "\n";
-  os << indent << "EdgeLengthRMS: " << this->EdgeLengthRMS << "\n";
-  os << indent << "EdgeLengthMax: " << this->EdgeLengthMax << "\n";
-  os << indent << "ShapeDistance: " << this->ShapeDistance << "\n";
+  for (const auto& [name, value] : this->Results)
+  {
+    os << indent << name << ": " << value << "\n";
+  }
 }

@@ -28,6 +28,9 @@ LAYERS = {
     "Distributed": ("Algebra", "Mesh"),
 }
 
+# Public classes that are no filters.
+PARAMETERS = ("vtkHandleMotion.h",)
+
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 
 
@@ -46,7 +49,7 @@ def problem(folder, header, is_quoted):
         if layer in LAYERS and layer not in (own, "Base", *LAYERS[own]):
             return f"{own} does not stand on {layer}"
     elif parts[:2] == ("Filters", "Bridge"):
-        if is_quoted and (ROOT / "Filters" / header).exists() and header.startswith("vtk"):
+        if header.startswith("vtk") and header not in PARAMETERS and (ROOT / "Filters" / header).exists():
             return "the bridge stands below the filters"
     elif parts[:1] == ("Plugin",):
         if header.startswith(("Kernel/", "Bridge/", "Eigen/")):

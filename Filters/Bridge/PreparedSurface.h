@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Bridge/SurfaceReader.h"
 #include "Kernel/Mesh/SurfaceRepair.h"
-#include "KernelBridge.h"
 
 #include "vtkType.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Bridge/RestoredSurface.h"
 
+#include "Bridge/PointArrays.h"
 #include "Bridge/PreparedSurface.h"
 #include "Kernel/Mesh/Geometry.h"
-#include "KernelBridge.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -85,16 +85,6 @@ Correspondence ReadCorrespondence(vtkPolyData* prepared, vtkPolyData* original)
     }
   }
   return ids;
-}
-
-Points ReadPositions(vtkPolyData* surface)
-{
-  Points positions(surface->GetNumberOfPoints(), 3);
-  for (vtkIdType v = 0; v < positions.rows(); ++v)
-  {
-    surface->GetPoint(v, positions.row(v).data());
-  }
-  return positions;
 }
 
 /// Where each original point goes, and in `parted` those whose copies went
@@ -297,7 +287,7 @@ std::string WriteRestoredSurface(vtkPolyData* prepared, vtkPolyData* original, v
   const Correspondence ids = ReadCorrespondence(prepared, original);
   const TriangleSoup soup = ReadTriangles(original, "original");
   IdSample parted;
-  const Points moved = MovedPoints(ids, ReadPositions(prepared), soup.Positions, parted);
+  const Points moved = MovedPoints(ids, ReadPoints(prepared), soup.Positions, parted);
 
   output->ShallowCopy(original);
   WritePoints(original, moved, output);

@@ -548,12 +548,12 @@ TEST(MarkHandle, RefusesArraysThatAreNoHandles)
 
   handles->SetNumberOfTuples(120);
   handles->FillValue(0);
-  marker.ExpectError("has 120 values for 121 points");
+  marker.ExpectError("has 120 tuples of 1 components; expected 121 of 1");
   handles->SetNumberOfComponents(3);
   handles->SetNumberOfTuples(121);
   handles->FillValue(0);
   handles->Modified();
-  marker.ExpectError("it has 3 components instead of 1");
+  marker.ExpectError("tuples of 3 components");
   vtkNew<vtkDoubleArray> reals;
   reals->SetName("Handle");
   reals->SetNumberOfTuples(121);
@@ -563,13 +563,13 @@ TEST(MarkHandle, RefusesArraysThatAreNoHandles)
   reals->SetValue(9, std::numeric_limits<double>::quiet_NaN());
   reals->SetValue(10, 1e12);
   marker.Input->GetPointData()->AddArray(reals);
-  marker.ExpectError("at 4 points (ids 3, 8, 9, 10) it is no whole number >= 0");
+  marker.ExpectError("4 values (ids 3, 8, 9, 10) that are no whole numbers >= 0");
   vtkNew<vtkStringArray> words;
   words->SetName("Handle");
   words->SetNumberOfTuples(121);
   marker.Input->GetPointData()->RemoveArray("Handle");
   marker.Input->GetPointData()->AddArray(words);
-  marker.ExpectError("it has no numbers");
+  marker.ExpectError("has no numbers");
   EXPECT_EQ(marker.Input->GetNumberOfPoints(), 121);
   EXPECT_EQ(marker.Input->GetPointData()->GetAbstractArray("Handle"), words);
 

@@ -365,15 +365,27 @@ TEST(VtkSurfaceMorph, InterpolatesPointDataAndPassesTheRest)
     fixture.Keys[k]->GetCellData()->AddArray(ids);
   }
   vtktest::AddArray(fixture.Keys[0], "Only first", 1, [](vtkIdType, double* x) { *x = 5.0; });
-  fixture.At(0.25);
+  fixture.Filter->SetParameter(0.25);
+  fixture.Filter->Update();
+  EXPECT_TRUE(fixture.Log->Errors.empty());
+  vtktest::ExpectMessage(fixture.Log->Warnings, { "\"Only first\"", "not all key frames" });
   vtkPolyData* output = fixture.Filter->GetOutput();
   vtkDataArray* heat = output->GetPointData()->GetArray("Heat");
   EXPECT_EQ(heat->GetComponent(7, 0), 9.5);
   EXPECT_EQ(heat->GetComponent(7, 1), -1.0);
   EXPECT_EQ(output->GetPointData()->GetArray("Handle")->GetComponent(3, 0), 0.0);
-  EXPECT_EQ(output->GetPointData()->GetArray("Only first")->GetComponent(3, 0), 5.0);
+  EXPECT_EQ(output->GetPointData()->GetArray("Only first"), nullptr);
   EXPECT_EQ(output->GetCellData()->GetArray("Cell")->GetComponent(3, 0), 3.0);
   vtktest::ExpectSameCells(output, fixture.Keys[0]);
+  // Beyond the middle the last one is nearer; at its parameter all is its own.
+  for (const double parameter : { 0.75, 1.0 })
+  {
+    fixture.Filter->SetParameter(parameter);
+    fixture.Filter->Update();
+    EXPECT_EQ(output->GetPointData()->GetArray("Handle")->GetComponent(3, 0), 1.0);
+    EXPECT_EQ(output->GetCellData()->GetArray("Cell")->GetComponent(3, 0), 4.0);
+  }
+  vtktest::ExpectSameSurface(fixture.Filter->GetOutput(), fixture.Keys[1]);
 }
 
 TEST(VtkSurfaceMorph, ComputesNormalsAnew)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Algebra/ConstrainedSolver.h"
+#include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
 
@@ -53,6 +54,14 @@ public:
 
   /// The same for the current surface.
   Eigen::VectorXd Measure(const Points& current, const ExecutionContext& context = {}) const;
+
+  /// Without the mesh, which others hold too.
+  std::size_t GetBytes() const
+  {
+    return this->Solver.GetBytes() +
+      TotalBytes(this->Positions, this->EnclosesVolume, this->EdgeWeight, this->Stiffness,
+        this->Centers, this->Reference);
+  }
 
 private:
   Eigen::VectorXd Sum(const Points& points, const Points& centers) const;

@@ -23,6 +23,11 @@ public:
   /// could not be closed, in a sentence; empty if nothing.
   std::string Close(double t, Points& positions) const;
 
+  std::size_t GetBytes() const
+  {
+    return this->Volumes.GetBytes() + this->Laplacian.GetBytes() + BytesOf(this->TakesPart);
+  }
+
 private:
   std::shared_ptr<const TriangleMesh> Mesh;
   KeyInterpolation Volumes; // #components rows

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Morph/KeyInterpolation.h"
 #include "Morph/SurfaceMorph.h"
 
@@ -28,6 +29,12 @@ public:
   RigidPlacement(const KeyFrames& keys, Eigen::VectorXd weights);
 
   void Place(double t, Points& positions) const;
+
+  std::size_t GetBytes() const
+  {
+    return BytesOf(this->Keys.Positions) + this->CenterPaths.GetBytes() +
+      TotalBytes(this->Weights, this->Centers, this->Turns);
+  }
 
 private:
   KeyFrames Keys;

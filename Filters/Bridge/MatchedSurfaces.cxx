@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SurfacePair.h"
+#include "Bridge/MatchedSurfaces.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -56,19 +56,24 @@ void CollectDifferences(
   }
 }
 
-/// The positions of all points that `mesh` uses. `surface` has those that its
-/// own triangles use.
-Points PositionsFor(
-  const TriangleMesh& mesh, Surface surface, vtkPolyData* polyData, const std::string& role)
+/// The positions of all points that `mesh` uses. `surface` has those that its own
+/// triangles use.
+std::shared_ptr<const Points> PositionsFor(
+  const TriangleMesh& mesh, const Surface& surface, vtkPolyData* polyData, const std::string& role)
 {
+  if (surface.Mesh.get() == &mesh)
+  {
+    return surface.Positions;
+  }
+  auto positions = std::make_shared<Points>(*surface.Positions);
   IdSample nonFinite;
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    if (mesh.IsUsed(v) && !surface.Mesh.IsUsed(v))
+    if (mesh.IsUsed(v) && !surface.Mesh->IsUsed(v))
     {
       Eigen::Vector3d position;
       polyData->GetPoint(v, position.data());
-      surface.Positions.row(v) = (position - surface.Origin).transpose();
+      positions->row(v) = (position - surface.Origin).transpose();
       if (!position.allFinite())
       {
         nonFinite.Add(v);
@@ -81,7 +86,7 @@ Points PositionsFor(
       "The " + role + " has " + nonFinite.Describe("point", "points") +
         " with a NaN or infinite coordinate: repair or remove them.");
   }
-  return std::move(surface.Positions);
+  return positions;
 }
 
 vtkIdType FirstPolygon(vtkPolyData* surface)
@@ -91,6 +96,11 @@ vtkIdType FirstPolygon(vtkPolyData* surface)
 
 void RequireSameConnectivity(const Named& first, const Named& other, const std::string& advice)
 {
+  if (first.Surface->GetNumberOfPoints() == other.Surface->GetNumberOfPoints() &&
+    KeyOfCells(first.Surface) == KeyOfCells(other.Surface))
+  {
+    return;
+  }
   RequireSameCount("points", first, other, &vtkPolyData::GetNumberOfPoints, advice);
   RequireSameCount("polygons", first, other, &vtkPolyData::GetNumberOfPolys, advice);
   RequireSameCount("triangle strips", first, other, &vtkPolyData::GetNumberOfStrips, advice);
@@ -107,52 +117,65 @@ void RequireSameConnectivity(const Named& first, const Named& other, const std::
         " with other points than in the " + other.Role + ". " + advice);
   }
 }
+
+/// The triangles of `best` with the cell ids of the first surface: lines and
+/// vertices have ids before the polygons and may differ in number.
+std::shared_ptr<const Connectivity> CellsOfFirst(
+  const std::shared_ptr<const Connectivity>& best, vtkIdType shift)
+{
+  if (shift == 0)
+  {
+    return best;
+  }
+  auto cells = std::make_shared<Connectivity>(*best);
+  for (long long& cell : cells->CellIds)
+  {
+    cell += shift;
+  }
+  return cells;
+}
+}
+
+Surface MatchedSurfaces::First() const
+{
+  Surface first;
+  first.Cells = this->Cells;
+  first.Mesh = this->Mesh;
+  first.Positions = this->Positions.front();
+  first.Origin = this->Origins.front();
+  return first;
 }
 
 MatchedSurfaces ReadMatchedSurfaces(const std::vector<vtkPolyData*>& inputs,
-  const std::vector<std::string>& roles, const std::string& advice)
+  const std::vector<std::string>& roles, const std::string& advice, const ExecutionContext& context)
 {
   const Named first{ inputs.front(), roles.front() };
   MatchedSurfaces matched;
-  std::vector<Surface> surfaces;
+  std::vector<std::shared_ptr<const Surface>> surfaces;
   // Where some are so flat that polygons cannot be triangulated, another one
   // knows how.
   std::size_t best = 0;
   for (std::size_t k = 0; k < inputs.size(); ++k)
   {
-    surfaces.push_back(ReadSurface(inputs[k], roles[k]));
+    const double count = static_cast<double>(inputs.size());
+    surfaces.push_back(
+      ReadSurface(inputs[k], roles[k], context.Part(k / count, (k + 1.0) / count)));
     RequireSameConnectivity(first, { inputs[k], roles[k] }, advice);
-    if (surfaces[k].Mesh.NumberOfTriangles() > surfaces[best].Mesh.NumberOfTriangles())
+    if (surfaces[k]->Mesh->NumberOfTriangles() > surfaces[best]->Mesh->NumberOfTriangles())
     {
       best = k;
     }
-    matched.Warning +=
-      (matched.Warning.empty() || surfaces[k].Warning.empty() ? "" : " ") + surfaces[k].Warning;
-    matched.Origins.push_back(surfaces[k].Origin);
-    matched.ReadFrom.push_back(surfaces[k].ReadFrom);
+    const std::string warning = surfaces[k]->Describe(roles[k], inputs[k]);
+    matched.Warning += (matched.Warning.empty() || warning.empty() ? "" : " ") + warning;
+    matched.Origins.push_back(surfaces[k]->Origin);
   }
-  matched.Mesh = surfaces[best].Mesh;
-  matched.CellIds = surfaces[best].CellIds;
-  // Lines and vertices have ids before the polygons and may differ in number.
-  const vtkIdType shift = FirstPolygon(inputs.front()) - FirstPolygon(inputs[best]);
-  for (long long& cell : matched.CellIds)
-  {
-    cell += shift;
-  }
+  matched.Cells =
+    CellsOfFirst(surfaces[best]->Cells, FirstPolygon(inputs.front()) - FirstPolygon(inputs[best]));
+  matched.Mesh = { matched.Cells, &matched.Cells->Mesh };
   for (std::size_t k = 0; k < inputs.size(); ++k)
   {
-    matched.Positions.push_back(
-      PositionsFor(matched.Mesh, std::move(surfaces[k]), inputs[k], roles[k]));
+    matched.Positions.push_back(PositionsFor(*matched.Mesh, *surfaces[k], inputs[k], roles[k]));
   }
   return matched;
-}
-
-SurfacePair ReadSurfacePair(vtkPolyData* current, vtkPolyData* reference)
-{
-  MatchedSurfaces matched = ReadMatchedSurfaces({ current, reference }, { "input", "reference" },
-    "Give both the same points and cells in the same order, such as a surface before and after it "
-    "was deformed.");
-  return { std::move(matched.Mesh), std::move(matched.CellIds), std::move(matched.Positions[1]),
-    std::move(matched.Positions[0]), std::move(matched.Warning) };
 }
 }

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Bridge/FilterRun.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkAlgorithmOutput.h"
+#include "vtkCommunicator.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkPolyData.h"
+#include "vtkSMPTools.h"
+#include "vtkTable.h"
+
+#include <new>
+
+namespace cartan
+{
+namespace
+{
+/// What all ranks found out together: one of them tells.
+class CollectiveError : public Error
+{
+public:
+  explicit CollectiveError(const std::string& message)
+    : Error(ErrorCode::BadInput, message)
+  {
+  }
+};
+
+ExecutionContext MakeContext(vtkAlgorithm* algorithm)
+{
+  return ExecutionContext(
+    [](int n, const ExecutionContext::Range& body)
+    {
+      vtkSMPTools::For(0, n,
+        [&body](vtkIdType begin, vtkIdType end)
+        { body(static_cast<int>(begin), static_cast<int>(end)); });
+    },
+    [algorithm](double fraction)
+    {
+      algorithm->UpdateProgress(fraction);
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+      return !algorithm->CheckAbort(); // upstream's request to stop counts too
+#else
+      return algorithm->GetAbortExecute() == 0;
+#endif
+    });
+}
+}
+
+FilterRun::FilterRun(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs,
+  vtkInformationVector* outputs, KeptResults& kept)
+  : Filter(filter)
+  , TheRequest(request)
+  , Inputs(inputs)
+  , Outputs(outputs)
+  , Kept(kept)
+  , TheContext(MakeContext(filter))
+{
+}
+
+vtkInformation* FilterRun::OutputInformation() const
+{
+  return this->Outputs->GetInformationObject(0);
+}
+
+vtkDataObject* FilterRun::InputObject(int port) const
+{
+  return vtkDataObject::GetData(this->Inputs[port]);
+}
+
+vtkPolyData* FilterRun::Input(int port, int connection) const
+{
+  return vtkPolyData::GetData(this->Inputs[port], connection);
+}
+
+vtkTable* FilterRun::InputTable(int port) const
+{
+  return vtkTable::GetData(this->Inputs[port]);
+}
+
+int FilterRun::NumberOfConnections(int port) const
+{
+  return this->Inputs[port]->GetNumberOfInformationObjects();
+}
+
+vtkDataObject* FilterRun::OutputObject(int port) const
+{
+  return vtkDataObject::GetData(this->Outputs, port);
+}
+
+vtkPolyData* FilterRun::Output(int port) const
+{
+  return vtkPolyData::GetData(this->Outputs, port);
+}
+
+vtkTable* FilterRun::OutputTable(int port) const
+{
+  return vtkTable::GetData(this->Outputs, port);
+}
+
+std::shared_ptr<const Surface> FilterRun::ReadSurface(int port, const std::string& role)
+{
+  const auto surface =
+    cartan::ReadSurface(this->Input(port), role, this->TheContext.Part(0.0, 0.1));
+  this->Warn(surface->Describe(role, this->Input(port)));
+  return surface;
+}
+
+ContentKey FilterRun::SurfaceKey() const
+{
+  return KeyOfSurface(this->Input());
+}
+
+void FilterRun::Warn(const std::string& text) const
+{
+  if (!text.empty())
+  {
+    vtkWarningWithObjectMacro(this->Filter, << text);
+  }
+}
+
+RunOutcome RunGuarded(const std::function<void()>& body)
+{
+  RunOutcome outcome;
+  try
+  {
+    body();
+  }
+  catch (const CollectiveError& error)
+  {
+    outcome.Problem = error.what();
+    outcome.IsCollective = true;
+  }
+  catch (const Error& error)
+  {
+    outcome.IsAborted = error.GetCode() == ErrorCode::Aborted;
+    outcome.Problem = outcome.IsAborted ? "" : error.what();
+  }
+  catch (const std::bad_alloc&)
+  {
+    outcome.Problem = "Out of memory: decimate the surface or free memory.";
+  }
+  catch (const std::exception& error)
+  {
+    outcome.Problem = error.what();
+  }
+  return outcome;
+}
+
+void RefuseDistributed(vtkAlgorithm* filter)
+{
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  if (!controller || controller->GetNumberOfProcesses() < 2 ||
+    filter->GetNumberOfInputConnections(0) == 0)
+  {
+    return;
+  }
+  // While the executive feeds a composite data set block by block, ranks may
+  // have different numbers of blocks and must not wait for each other.
+  vtkAlgorithm* producer = filter->GetInputAlgorithm(0, 0);
+  const int producerPort = filter->GetInputConnection(0, 0)->GetIndex();
+  if (!vtkPolyData::SafeDownCast(producer->GetOutputDataObject(producerPort)))
+  {
+    throw CollectiveError(
+      "Composite surfaces cannot be processed on several ranks: extract a block and gather it on "
+      "one rank (Aggregate Dataset) first.");
+  }
+  auto* input = vtkPolyData::SafeDownCast(filter->GetInputDataObject(0, 0));
+  const int hasCells = input && input->GetNumberOfCells() > 0;
+  int ranksWithCells = 0;
+  controller->AllReduce(&hasCells, &ranksWithCells, 1, vtkCommunicator::SUM_OP);
+  if (ranksWithCells > 1)
+  {
+    throw CollectiveError("The surface is distributed over " + std::to_string(ranksWithCells) +
+      " ranks, and the pieces do not know their neighbors: gather it on one rank (Aggregate "
+      "Dataset, then Clean) first.");
+  }
+}
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Bridge/KeptResults.h"
+#include "Bridge/SurfaceReader.h"
+
+class vtkAlgorithm;
+class vtkDataObject;
+class vtkInformation;
+class vtkInformationVector;
+class vtkPolyData;
+class vtkTable;
+
+namespace cartan
+{
+/// What a filter has at hand while it executes.
+class FilterRun
+{
+public:
+  FilterRun(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs, KeptResults& kept);
+
+  vtkInformation* Request() const { return this->TheRequest; }
+  vtkInformation* OutputInformation() const;
+
+  /// The data on an input port, null where nothing is connected.
+  vtkDataObject* InputObject(int port = 0) const;
+  vtkPolyData* Input(int port = 0, int connection = 0) const;
+  vtkTable* InputTable(int port) const;
+  int NumberOfConnections(int port) const;
+
+  vtkDataObject* OutputObject(int port = 0) const;
+  vtkPolyData* Output(int port = 0) const;
+  vtkTable* OutputTable(int port) const;
+
+  /// VTK's threads, the filter's progress and its AbortExecute.
+  const ExecutionContext& Context() const { return this->TheContext; }
+
+  /// The surface on a port; warns about unusual input.
+  std::shared_ptr<const Surface> ReadSurface(int port = 0, const std::string& role = "input");
+
+  /// The key of the surface on port 0.
+  ContentKey SurfaceKey() const;
+
+  /// vtkWarningMacro on the filter if `text` is not empty.
+  void Warn(const std::string& text) const;
+
+  /// What survives to the next update, see KeptResults::Get.
+  template <typename T, typename Make>
+  std::shared_ptr<T> Keep(const ContentKey& key, const Make& make)
+  {
+    return this->Kept.Get<T>(key, make);
+  }
+
+private:
+  vtkAlgorithm* Filter;
+  vtkInformation* TheRequest;
+  vtkInformationVector** Inputs;
+  vtkInformationVector* Outputs;
+  KeptResults& Kept;
+  ExecutionContext TheContext;
+};
+
+/// How a run ended.
+struct RunOutcome
+{
+  std::string Problem; ///< a sentence for the user; empty if all went well
+  bool IsAborted = false;
+  bool IsCollective = false; ///< all ranks have the same problem
+
+  bool IsSuccess() const { return this->Problem.empty() && !this->IsAborted; }
+};
+
+/// Runs `body` and turns every exception into an outcome: one that left
+/// RequestData would take ParaView down.
+RunOutcome RunGuarded(const std::function<void()>& body);
+
+/// Throws CollectiveError when more than one rank has a part of the surface on
+/// port 0.
+void RefuseDistributed(vtkAlgorithm* filter);
+}

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Bridge/HandleArrays.h"
+
+#include "Bridge/PointArrays.h"
+
+#include "vtkBoundingBox.h"
+#include "vtkDataArray.h"
+#include "vtkIntArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cartan
+{
+namespace
+{
+/// Sorts the points by handle.
+void GroupPoints(Handles& handles)
+{
+  for (const int handle : handles.OfVertex)
+  {
+    // Points come in runs of one handle: most of them need no search.
+    if (handle > 0 && (handles.Ids.empty() || handles.Ids.back() != handle) &&
+      !std::binary_search(handles.Ids.begin(), handles.Ids.end(), handle))
+    {
+      handles.Ids.insert(std::upper_bound(handles.Ids.begin(), handles.Ids.end(), handle), handle);
+    }
+  }
+  handles.Offsets.assign(handles.Ids.size() + 1, 0);
+  const auto place = [&handles](int handle) {
+    return std::lower_bound(handles.Ids.begin(), handles.Ids.end(), handle) - handles.Ids.begin();
+  };
+  for (const int handle : handles.OfVertex)
+  {
+    if (handle > 0)
+    {
+      ++handles.Offsets[place(handle) + 1];
+    }
+  }
+  for (std::size_t i = 0; i < handles.Ids.size(); ++i)
+  {
+    handles.Offsets[i + 1] += handles.Offsets[i];
+  }
+  handles.Points.resize(handles.Offsets.back());
+  std::vector<int> next(handles.Offsets.begin(), handles.Offsets.end() - 1);
+  for (std::size_t v = 0; v < handles.OfVertex.size(); ++v)
+  {
+    if (handles.OfVertex[v] > 0)
+    {
+      handles.Points[next[place(handles.OfVertex[v])]++] = static_cast<int>(v);
+    }
+  }
+}
+}
+
+std::vector<int> ReadHandleIds(
+  vtkDataArray* array, const std::string& name, vtkIdType numberOfPoints, const std::string& advice)
+{
+  if (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != numberOfPoints)
+  {
+    throw Error(ErrorCode::BadInput,
+      "The point array \"" + name + "\" has " + std::to_string(array->GetNumberOfTuples()) +
+        " tuples of " + std::to_string(array->GetNumberOfComponents()) + " components; expected " +
+        std::to_string(numberOfPoints) + " of 1: " + advice);
+  }
+  std::vector<int> handles(numberOfPoints, 0);
+  IdSample bad;
+  auto* integers = vtkIntArray::FastDownCast(array);
+  for (vtkIdType v = 0; v < numberOfPoints; ++v)
+  {
+    const double value = integers ? integers->GetValue(v) : array->GetTuple1(v);
+    if (value >= 0.0 && value <= VTK_INT_MAX && value == std::floor(value))
+    {
+      handles[v] = static_cast<int>(value);
+    }
+    else
+    {
+      bad.Add(v);
+    }
+  }
+  if (!bad.IsEmpty())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The point array \"" + name + "\" has " + bad.Describe("value", "values") +
+        " that are no whole numbers >= 0: " + advice);
+  }
+  return handles;
+}
+
+bool Handles::Has(int id) const
+{
+  return std::binary_search(this->Ids.begin(), this->Ids.end(), id);
+}
+
+std::size_t Handles::GetBytes() const
+{
+  return sizeof(int) *
+    (this->OfVertex.capacity() + this->Ids.capacity() + this->Points.capacity() +
+      this->Offsets.capacity());
+}
+
+Handles ReadHandles(vtkPolyData* input, const TriangleMesh& mesh, const std::string& name)
+{
+  if (!input->GetPointData()->HasArray(name.c_str()))
+  {
+    throw Error(ErrorCode::BadInput,
+      "The input has no point array \"" + name +
+        "\" that says which points are handles: mark some with vtkMarkHandle (Mark Handle), or "
+        "set HandleArrayName.");
+  }
+  Handles handles;
+  handles.OfVertex =
+    ReadHandleIds(RequirePointArray(input, name, 1), name, input->GetNumberOfPoints());
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (!mesh.IsUsed(v))
+    {
+      handles.OfVertex[v] = 0;
+    }
+  }
+  GroupPoints(handles);
+  return handles;
+}
+
+vtkBoundingBox BoundsOfHandle(vtkPolyData* surface, const std::string& name, int id)
+{
+  vtkBoundingBox bounds;
+  vtkDataArray* handles = surface->GetPointData()->GetArray(name.c_str());
+  const vtkIdType count =
+    handles ? std::min(handles->GetNumberOfTuples(), surface->GetNumberOfPoints()) : 0;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (handles->GetComponent(i, 0) == id)
+    {
+      bounds.AddPoint(surface->GetPoint(i));
+    }
+  }
+  return bounds;
+}
+}

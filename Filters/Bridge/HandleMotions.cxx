@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Bridge/HandleMotions.h"
+
+#include "Bridge/PointArrays.h"
+#include "Kernel/Algebra/Rotation.h"
+#include "vtkHandleMotion.h"
+
+#include "vtkDataArray.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+
+namespace cartan
+{
+namespace
+{
+std::string ListIds(const std::vector<int>& ids)
+{
+  std::string text;
+  for (const int id : ids)
+  {
+    text += (text.empty() ? "" : ", ") + std::to_string(id);
+  }
+  return text;
+}
+
+Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> TransformAt(
+  const HandleArrays& arrays, Eigen::Index row)
+{
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+    arrays.Transforms.row(row).data());
+}
+
+/// Whether the arrays leave a handle's point as it is.
+bool IsAtRest(const HandleArrays& arrays, Eigen::Index row, const Eigen::RowVector3d& rest)
+{
+  return (arrays.Positions.rows() == 0 || arrays.Positions.row(row) == rest) &&
+    (arrays.RotationVectors.rows() == 0 || arrays.RotationVectors.row(row).isZero(0.0)) &&
+    (arrays.Transforms.rows() == 0 || TransformAt(arrays, row).isIdentity(0.0));
+}
+
+HandleMotion ToKernel(vtkHandleMotion* motion, const Eigen::Vector3d& origin)
+{
+  vtkNew<vtkMatrix4x4> transform;
+  motion->GetTransformRelativeTo(origin.data(), transform);
+  HandleMotion result;
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      result.Linear(row, column) = transform->GetElement(row, column);
+    }
+    result.Translation[row] = transform->GetElement(row, 3);
+  }
+  motion->GetRotationVector(result.RotationVector.data());
+  return result;
+}
+
+/// The target of one point by the arrays.
+void SetTarget(const HandleArrays& arrays, Eigen::Index row, int vertex, HandleTargets& targets)
+{
+  auto transform = MatrixAt(targets.Transforms, vertex);
+  if (arrays.Positions.rows())
+  {
+    targets.Positions.row(vertex) = arrays.Positions.row(row);
+  }
+  if (arrays.RotationVectors.rows())
+  {
+    targets.RotationVectors.row(vertex) = arrays.RotationVectors.row(row);
+    transform = RotationFromVector(arrays.RotationVectors.row(row).transpose());
+  }
+  if (arrays.Transforms.rows())
+  {
+    transform = TransformAt(arrays, row);
+    targets.RotationVectors.row(vertex) =
+      VectorFromRotation(ProjectOnRotations(transform)).transpose();
+  }
+}
+
+/// The target of one point by its handle's motion.
+void SetTarget(const HandleMotion& motion, int vertex, HandleTargets& targets)
+{
+  targets.Positions.row(vertex) =
+    (motion.Linear * targets.Positions.row(vertex).transpose() + motion.Translation).transpose();
+  targets.RotationVectors.row(vertex) = motion.RotationVector.transpose();
+  MatrixAt(targets.Transforms, vertex) = motion.Linear;
+}
+}
+
+void RequireMeaningfulMotions(const MotionsById& motions, const Handles& handles)
+{
+  for (const auto& [id, motion] : motions)
+  {
+    if (!handles.Has(id))
+    {
+      throw Error(ErrorCode::BadInput,
+        "Handle " + std::to_string(id) +
+          " has a motion, but no point in a triangle belongs to it. " +
+          (handles.Ids.empty() ? std::string("No point belongs to any handle")
+                               : "Handles with points: " + ListIds(handles.Ids)) +
+          ". Mark points for it or remove the motion.");
+    }
+    const std::string problem = motion->GetProblem();
+    if (!problem.empty())
+    {
+      throw Error(
+        ErrorCode::BadInput, "The motion of handle " + std::to_string(id) + ": " + problem);
+    }
+  }
+}
+
+std::size_t HandleArrays::GetBytes() const
+{
+  return sizeof(double) *
+    static_cast<std::size_t>(
+      this->Positions.size() + this->RotationVectors.size() + this->Transforms.size());
+}
+
+HandleArrays ReadHandleArrays(
+  vtkPolyData* input, const Surface& surface, const Handles& handles, const HandleArrayNames& names)
+{
+  HandleArrays arrays;
+  const auto read = [&](const std::string& name, int components)
+  {
+    return name.empty() ? Field()
+                        : ReadPointArray(input, name, components, handles.Points, "handle point");
+  };
+  arrays.Positions = read(names.Positions, 3);
+  arrays.RotationVectors = read(names.RotationVectors, 3);
+  arrays.Transforms = read(names.Transforms, 9);
+  if (!names.RotationVectors.empty() && !names.Transforms.empty())
+  {
+    throw Error(ErrorCode::BadInput,
+      "Both a rotation vector array and a transform array are set: choose one.");
+  }
+  if (arrays.Positions.rows())
+  {
+    arrays.Positions.rowwise() -= surface.Origin.transpose();
+  }
+  for (std::size_t h = 0; h < handles.Ids.size(); ++h)
+  {
+    bool isAtRest = true;
+    for (int i = handles.Offsets[h]; i < handles.Offsets[h + 1] && isAtRest; ++i)
+    {
+      isAtRest = IsAtRest(arrays, i, surface.Positions->row(handles.Points[i]));
+    }
+    if (!isAtRest)
+    {
+      arrays.MovingIds.push_back(handles.Ids[h]);
+    }
+  }
+  return arrays;
+}
+
+Eigen::VectorXd ReadSoftWeights(vtkPolyData* input, const std::string& name, const Handles& handles)
+{
+  vtkDataArray* array = RequirePointArray(input, name, 1);
+  Eigen::VectorXd weights =
+    Eigen::VectorXd::Zero(static_cast<Eigen::Index>(handles.OfVertex.size()));
+  IdSample bad;
+  for (const int v : handles.Points)
+  {
+    weights[v] = array->GetTuple1(v);
+    if (!(weights[v] >= 0.0))
+    {
+      bad.Add(v);
+    }
+  }
+  if (!bad.IsEmpty())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The point array \"" + name + "\" has " + bad.Describe("handle point", "handle points") +
+        " with a weight that is negative or NaN: 0 does not hold, infinity holds exactly.");
+  }
+  return weights;
+}
+
+HandleTargets MakeTargets(const HandleProblem& problem, const Eigen::Vector3d& origin,
+  const MotionsById& motions, const Handles& handles, const HandleArrays& arrays)
+{
+  HandleTargets targets;
+  bool isPerVertex = false;
+  for (const int id : problem.Moving)
+  {
+    const auto motion = motions.find(id);
+    isPerVertex = isPerVertex || motion == motions.end();
+    targets.Motions.push_back(
+      motion == motions.end() ? HandleMotion() : ToKernel(motion->second, origin));
+  }
+  if (!isPerVertex)
+  {
+    return targets;
+  }
+  targets.Positions = *problem.Rest;
+  targets.RotationVectors = Points::Zero(problem.Rest->rows(), 3);
+  targets.Transforms = Identities(problem.Rest->rows());
+  for (std::size_t h = 0; h < handles.Ids.size(); ++h)
+  {
+    const int id = handles.Ids[h];
+    const auto moving = std::lower_bound(problem.Moving.begin(), problem.Moving.end(), id);
+    if (moving == problem.Moving.end() || *moving != id)
+    {
+      continue;
+    }
+    for (int i = handles.Offsets[h]; i < handles.Offsets[h + 1]; ++i)
+    {
+      if (motions.count(id))
+      {
+        SetTarget(targets.Motions[moving - problem.Moving.begin()], handles.Points[i], targets);
+      }
+      else
+      {
+        SetTarget(arrays, i, handles.Points[i], targets);
+      }
+    }
+  }
+  return targets;
+}
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Bridge/SurfaceWriter.h"
+
+#include "Kernel/Mesh/Geometry.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <atomic>
+#include <cmath>
+
+namespace cartan
+{
+namespace
+{
+/// From the kernel to the output in one pass: the input's own coordinates where
+/// nothing moved (to the origin and back would cost them their last bit).
+/// Returns whether all are finite.
+template <typename Array>
+bool WriteCoordinates(const Surface& surface, const Points& positions, vtkDataArray* input,
+  Array* output, const ExecutionContext& context)
+{
+  using Real = typename Array::ValueType;
+  auto* same = Array::FastDownCast(input);
+  const Real* from = same ? same->GetPointer(0) : nullptr;
+  Real* to = output->GetPointer(0);
+  const TriangleMesh& mesh = *surface.Mesh;
+  const Points& rest = *surface.Positions;
+  std::atomic<bool> isFinite{ true };
+  context.For(mesh.NumberOfVertices(),
+    [&](int begin, int end)
+    {
+      bool isFiniteHere = true;
+      for (int v = begin; v < end; ++v)
+      {
+        Real* point = to + 3 * static_cast<std::size_t>(v);
+        const bool hasMoved = mesh.IsUsed(v) && positions.row(v) != rest.row(v);
+        for (int c = 0; c < 3; ++c)
+        {
+          point[c] = hasMoved ? static_cast<Real>(positions(v, c) + surface.Origin[c])
+            : from            ? from[3 * static_cast<std::size_t>(v) + c]
+                              : static_cast<Real>(input->GetComponent(v, c));
+          isFiniteHere = isFiniteHere && (!hasMoved || std::isfinite(point[c]));
+        }
+      }
+      if (!isFiniteHere)
+      {
+        isFinite = false;
+      }
+    });
+  return isFinite;
+}
+
+[[noreturn]] void ThrowNotFinite(const Surface& surface, vtkDataArray* coordinates)
+{
+  IdSample bad;
+  for (int v = 0; v < surface.Mesh->NumberOfVertices(); ++v)
+  {
+    double point[3];
+    coordinates->GetTuple(v, point);
+    if (surface.Mesh->IsUsed(v) && !Eigen::Map<const Eigen::Vector3d>(point).allFinite())
+    {
+      bad.Add(v);
+    }
+  }
+  throw Error(ErrorCode::BadInput,
+    "The result has " + bad.Describe("point", "points") + " outside the range of " +
+      (coordinates->GetDataType() == VTK_FLOAT ? "single precision: give the points as double, or "
+                                               : "double precision: ") +
+      "use smaller motions.");
+}
+
+/// n turned as `before` turns into `after`, both unit vectors, by the shortest way.
+Eigen::Vector3d Turned(
+  const Eigen::Vector3d& n, const Eigen::Vector3d& before, const Eigen::Vector3d& after)
+{
+  const double along = before.dot(n);
+  const double cosine = before.dot(after);
+  if (cosine < -1.0 + 1e-12)
+  {
+    return n - along * before + along * after; // opposite: no shortest way, across stays
+  }
+  const Eigen::Vector3d middle = before + after;
+  return n - (middle.dot(n) / (1.0 + cosine)) * middle + 2.0 * along * after;
+}
+
+/// New normals after a motion: `before` and `after` are the computed ones, zero
+/// where there is none; the old ones stay where these are equal. Without `before`
+/// the new ones are those computed.
+vtkSmartPointer<vtkDataArray> NewNormals(
+  vtkDataArray* old, const Points* before, const Points& after)
+{
+  vtkSmartPointer<vtkDataArray> normals;
+  normals.TakeReference(
+    vtkDataArray::CreateDataArray(old->GetDataType() == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT));
+  normals->SetName(old->GetName());
+  normals->SetNumberOfComponents(3);
+  normals->SetNumberOfTuples(old->GetNumberOfTuples());
+  for (vtkIdType i = 0; i < old->GetNumberOfTuples(); ++i)
+  {
+    Eigen::Vector3d normal;
+    old->GetTuple(i, normal.data());
+    const bool hasNew = !after.row(i).isZero(0.0);
+    if (hasNew && (!before || normal.isZero(0.0)))
+    {
+      normal = after.row(i);
+    }
+    else if (before && hasNew && !before->row(i).isZero(0.0) && before->row(i) != after.row(i))
+    {
+      normal = Turned(normal, before->row(i), after.row(i));
+    }
+    normals->SetTuple(i, normal.data());
+  }
+  return normals;
+}
+
+/// The unit normals of cells; zero for cells without triangles.
+Points CellNormals(const Surface& surface, const Points& positions, vtkIdType numberOfCells)
+{
+  const Points areaVectors = TriangleAreaVectors(positions, surface.Mesh->GetTriangles());
+  Points normals = Points::Zero(numberOfCells, 3);
+  for (Eigen::Index t = 0; t < areaVectors.rows(); ++t)
+  {
+    normals.row(surface.Cells->CellIds[t]) += areaVectors.row(t);
+  }
+  for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
+  {
+    const double size = normals.row(cell).norm();
+    if (size > 0.0)
+    {
+      normals.row(cell) /= size;
+    }
+  }
+  return normals;
+}
+
+/// Replaces the normals of points or cells. Returns a warning where their number
+/// is not that of the points or cells: such an array is left out.
+template <typename Compute>
+std::string UpdateNormals(vtkDataSetAttributes* attributes, vtkIdType count,
+  const std::string& what, const Points* rest, const Points& positions, const Compute& compute)
+{
+  vtkSmartPointer<vtkDataArray> old = attributes->GetNormals();
+  if (!old)
+  {
+    return {};
+  }
+  const std::string name = old->GetName() ? old->GetName() : "";
+  if (old->GetNumberOfTuples() != count || old->GetNumberOfComponents() != 3)
+  {
+    attributes->SetActiveAttribute(-1, vtkDataSetAttributes::NORMALS);
+    attributes->RemoveArray(name.c_str());
+    return "The normals \"" + name + "\" have " + std::to_string(old->GetNumberOfTuples()) +
+      " tuples for " + std::to_string(count) + " " + what +
+      " and are left out: compute them anew (Surface Normals).";
+  }
+  const Points after = compute(positions);
+  if (rest)
+  {
+    const Points before = compute(*rest);
+    attributes->SetNormals(NewNormals(old, &before, after));
+  }
+  else
+  {
+    attributes->SetNormals(NewNormals(old, nullptr, after));
+  }
+  return {};
+}
+
+std::string UpdateAllNormals(const Surface& surface, const Points* rest, const Points& positions,
+  vtkPolyData* output, const ExecutionContext& context)
+{
+  const vtkIdType numberOfCells = output->GetNumberOfCells();
+  const std::string ofPoints =
+    UpdateNormals(output->GetPointData(), output->GetNumberOfPoints(), "points", rest, positions,
+      [&](const Points& points) { return VertexNormals(*surface.Mesh, points, context); });
+  const std::string ofCells = UpdateNormals(output->GetCellData(), numberOfCells, "cells", rest,
+    positions, [&](const Points& points) { return CellNormals(surface, points, numberOfCells); });
+  return ofPoints + (ofPoints.empty() || ofCells.empty() ? "" : " ") + ofCells;
+}
+}
+
+std::string WriteSurface(const Surface& surface, const Points& positions, vtkPolyData* input,
+  vtkPolyData* output, const ExecutionContext& context)
+{
+  output->ShallowCopy(input);
+  vtkNew<vtkPoints> points;
+  const bool isFloat = input->GetPoints()->GetDataType() == VTK_FLOAT;
+  points->SetDataType(isFloat ? VTK_FLOAT : VTK_DOUBLE);
+  points->SetNumberOfPoints(input->GetNumberOfPoints());
+  vtkDataArray* from = input->GetPoints()->GetData();
+  const bool isFinite = isFloat ? WriteCoordinates(surface, positions, from,
+                                    vtkFloatArray::FastDownCast(points->GetData()), context)
+                                : WriteCoordinates(surface, positions, from,
+                                    vtkDoubleArray::FastDownCast(points->GetData()), context);
+  if (!isFinite)
+  {
+    ThrowNotFinite(surface, points->GetData());
+  }
+  output->SetPoints(points);
+  return UpdateAllNormals(surface, surface.Positions.get(), positions, output, context);
+}
+
+void WriteReconstruction(const Surface& surface, const Points& positions, vtkPolyData* input,
+  vtkPolyData* output, const ExecutionContext& context)
+{
+  output->ShallowCopy(input);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(positions.rows());
+  for (Eigen::Index v = 0; v < positions.rows(); ++v)
+  {
+    points->SetPoint(v, positions.row(v).data());
+  }
+  output->SetPoints(points);
+  UpdateAllNormals(surface, nullptr, positions, output, context);
+}
+}

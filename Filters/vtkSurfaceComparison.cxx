@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSurfaceComparison.h"
+
+#include "Bridge/FilterRun.h"
+#include "Bridge/MatchedSurfaces.h"
+#include "Bridge/SurfacePair.h"
+
+#include "vtkInformation.h"
+#include "vtkPolyData.h"
+
+vtkSurfaceComparison::vtkSurfaceComparison()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+void vtkSurfaceComparison::SetReferenceConnection(vtkAlgorithmOutput* reference)
+{
+  this->SetInputConnection(1, reference);
+}
+
+void vtkSurfaceComparison::SetReferenceData(vtkPolyData* reference)
+{
+  this->SetInputData(1, reference);
+}
+
+int vtkSurfaceComparison::FillInputPortInformation(int port, vtkInformation* info)
+{
+  return port == 1 ? SetPortType(info, "vtkPolyData", !this->NeedsReference())
+                   : this->Superclass::FillInputPortInformation(port, info);
+}
+
+void vtkSurfaceComparison::Measure(cartan::FilterRun&) {}
+
+void vtkSurfaceComparison::Execute(cartan::FilterRun& run)
+{
+  vtkPolyData* input = run.Input(0);
+  vtkPolyData* reference = run.Input(1);
+  if (!reference && !this->NeedsReference())
+  {
+    run.Output()->ShallowCopy(input);
+    this->Measure(run);
+    return;
+  }
+  const cartan::MatchedSurfaces matched = cartan::ReadMatchedSurfaces({ input, reference },
+    { "input", "reference" },
+    "Give both the same points and cells in the same order, such as a surface before and after it "
+    "was deformed.",
+    run.Context().Part(0.0, 0.1));
+  run.Warn(matched.Warning);
+  run.Output()->ShallowCopy(input);
+  cartan::SurfacePair pair{ matched.Mesh, matched.Cells, matched.Positions[1], matched.Positions[0],
+    cartan::KeyOfSurface(reference) };
+  // Its polygons may be triangulated as the current surface's are.
+  pair.ReferenceKey.AddBytes(
+    matched.Mesh->GetTriangles().data(), matched.Mesh->GetTriangles().size() * sizeof(int));
+  this->Compare(pair, run);
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkSurfaceFilter
+ * @brief base of the filters that work on triangle surfaces
+ *
+ * A concrete filter implements Execute(), which reads surfaces, calls the
+ * mathematics and writes the output. This class does the rest:
+ *
+ * - Every problem becomes one vtkErrorMacro; all outputs are empty then, the
+ *   input is not changed, and GetErrorCode() is vtkErrorCode::UserError. The update
+ *   itself counts as done, so that an interactive application goes on when the
+ *   cause is removed.
+ * - An input without points and cells gives empty outputs without a warning:
+ *   a pipeline that is being set up.
+ * - AbortExecute empties the outputs.
+ * - A surface that is distributed over several ranks is refused, unless the
+ *   concrete filter supports pieces.
+ * - What is expensive is kept from one update to the next, found by the contents
+ *   that it was made from. The output never depends on earlier updates, inputs
+ *   or settings. Surfaces with equal cells share one mesh, also among filters.
+ */
+#ifndef vtkSurfaceFilter_h
+#define vtkSurfaceFilter_h
+
+#include "vtkCartanModule.h" // For the export macro
+
+#include "vtkPolyDataAlgorithm.h"
+
+#include <memory> // For what is kept
+
+namespace cartan
+{
+class FilterRun;
+class KeptResults;
+}
+
+class VTKCARTAN_EXPORT vtkSurfaceFilter : public vtkPolyDataAlgorithm
+{
+public:
+  vtkTypeMacro(vtkSurfaceFilter, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  vtkSurfaceFilter(const vtkSurfaceFilter&) = delete;
+  void operator=(const vtkSurfaceFilter&) = delete;
+
+  ///@{
+  /**
+   * How much memory this filter may keep from one update to the next, in
+   * megabytes (10^6 bytes), >= 0. What was used longest ago is given up first;
+   * what the last update used is always kept. A lower limit never
+   * changes results, only how often surfaces are prepared anew. Default: 2000.
+   */
+  vtkSetClampMacro(KeptMemoryLimit, int, 0, VTK_INT_MAX);
+  vtkGetMacro(KeptMemoryLimit, int);
+  ///@}
+
+  /**
+   * How much memory this filter keeps, in megabytes (10^6 bytes). A mesh that
+   * several filters share counts in each of them.
+   */
+  double GetKeptMemory() const;
+
+  /**
+   * Releases the kept results.
+   */
+  void ReleaseKeptMemory();
+
+protected:
+  vtkSurfaceFilter();
+  ~vtkSurfaceFilter() override;
+
+  /**
+   * Makes the outputs from the inputs. Throws cartan::Error.
+   */
+  virtual void Execute(cartan::FilterRun& run) = 0;
+
+  /**
+   * Sets results that are valid after an update back to what they are without
+   * one. Called before each update.
+   */
+  virtual void ForgetResults() {}
+
+  /**
+   * Whether the filter supports a surface that is distributed over ranks.
+   * Default: no.
+   */
+  virtual bool SupportsPieces() const { return false; }
+
+  /**
+   * Whether an input without points and cells is passed on without a warning.
+   * Default: yes.
+   */
+  virtual bool AcceptsEmptyInput() const { return true; }
+
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+  /**
+   * Declares what an input or output port has, for FillInputPortInformation and
+   * FillOutputPortInformation: a class of data, and whether it may be missing.
+   */
+  static int SetPortType(vtkInformation* info, const char* className, bool isOptional = false);
+  static int SetOutputType(vtkInformation* info, const char* className);
+
+  /**
+   * Assigns a member that is not a number; modifies this filter if it changes.
+   */
+  template <typename Member, typename Value>
+  void SetMember(Member& member, const Value& value)
+  {
+    if (!(member == value))
+    {
+      member = value;
+      this->Modified();
+    }
+  }
+
+private:
+  void EmptyOutputs();
+
+  std::unique_ptr<cartan::KeptResults> Kept;
+  int KeptMemoryLimit = 2000;
+};
+
+#endif
