@@ -162,8 +162,7 @@ MorphNumbers MorphAt(double t, const KeySurfaces& keys, const MorphOptions& opti
     const Points positions = PositionsAt(t, keys.Surfaces.front(), options, key, *prepared, run);
     numbers.Iterations = prepared->Morph->GetNumberOfIterations();
     WriteBetween(keys.Surfaces, place, *prepared, positions, run);
-    run.Warn(InterpolateArrays(
-      keys.Surfaces, keys.Parameters, t, options.IsPinned ? options.HandleArray : "", run));
+    run.Warn(InterpolateArrays(keys.Surfaces, keys.Parameters, t, options.HandleArray, run));
   }
   numbers.EvaluationTime = vtkTimerLog::GetUniversalTime() - start;
   return numbers;

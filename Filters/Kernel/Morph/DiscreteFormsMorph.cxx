@@ -321,7 +321,6 @@ Points DiscreteFormsMorph::Evaluate(double t, const ExecutionContext& context)
   const Matrices edgeTransitions = this->EdgeTransitionsAt(t, rings, context);
   const bool isLinear = this->Solver != FrameSolver::RotationAveraging;
   Matrices frames = this->FramesAt(t, edgeTransitions, context.Part(0.1, isLinear ? 0.4 : 0.8));
-  this->Known.SetLast(t, frames);
   if (isLinear)
   {
     frames = this->LinearFrames(edgeTransitions, std::move(frames), context.Part(0.4, 0.8));

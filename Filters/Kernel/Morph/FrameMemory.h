@@ -9,19 +9,15 @@
 
 namespace cartan
 {
-/// The frames of a morph at its key frames and at the last parameter: starting
-/// points for the frames at another parameter.
+/// The frames of a morph at its key frames: starting points for those in between.
+/// What was found at other parameters is none, or the result would depend on what
+/// was asked for before.
 class FrameMemory
 {
 public:
   void AddKey(double parameter, Matrices frames) { this->Keys[parameter] = std::move(frames); }
-  void SetLast(double parameter, Matrices frames)
-  {
-    this->LastParameter = parameter;
-    this->Last = std::move(frames);
-  }
 
-  /// The parameter nearest to t whose frames are known, and these.
+  /// The key frame nearest to t, and its frames.
   struct Known
   {
     double Parameter;
@@ -34,14 +30,12 @@ public:
     {
       nearest = std::abs(key->first - t) < std::abs(nearest->first - t) ? key : nearest;
     }
-    return this->Last.size() && std::abs(this->LastParameter - t) < std::abs(nearest->first - t)
-      ? Known{ this->LastParameter, this->Last }
-      : Known{ nearest->first, nearest->second };
+    return { nearest->first, nearest->second };
   }
 
   std::size_t GetBytes() const
   {
-    std::size_t bytes = BytesOf(this->Last);
+    std::size_t bytes = 0;
     for (const auto& key : this->Keys)
     {
       bytes += BytesOf(key.second);
@@ -51,7 +45,5 @@ public:
 
 private:
   std::map<double, Matrices> Keys;
-  double LastParameter = 0.0;
-  Matrices Last;
 };
 }

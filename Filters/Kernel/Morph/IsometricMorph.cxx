@@ -286,7 +286,6 @@ void IsometricMorph::Average(
       " are not the best: their improvement did not end. The surface passes through itself, or "
       "the key frames are far from each other; add one in between.";
   }
-  this->Known.SetLast(t, frames);
 }
 
 void IsometricMorph::Place(const Layouts& layouts, const Matrices& frames, Points& points) const
