@@ -199,7 +199,7 @@ void ConstrainedSolver::Factorize(const SparseMatrix& matrix, const std::vector<
   ++this->Factorizations;
   RequireStep(numberOfFree,
     [&]() { return numberOfFree > 0 ? this->Factor->Factorize(block) : FactorStatus::Ok; });
-  this->FreeBlock = std::move(block);
+  this->FreeBlock.swap(block); // Eigen has no move of sparse matrices
   context.Report(1.0);
 }
 

@@ -221,7 +221,7 @@ private:
   std::vector<int> Sources; // the source that the path of each vertex ends at
   std::vector<unsigned char> Rounds;
   std::vector<unsigned char> IsSettled;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> Queue;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> Queue;
 };
 }
 
