@@ -191,7 +191,7 @@ Points HandlePositions(
 }
 
 HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
-  std::shared_ptr<const Eigen::VectorXd> edgeWeights, Hold hold, SolverBackend backend,
+  const std::shared_ptr<const Eigen::VectorXd>& edgeWeights, Hold hold, SolverBackend backend,
   const ExecutionContext& context)
   : MovingCount(static_cast<int>(problem.Moving.size()))
   , Solver(backend)

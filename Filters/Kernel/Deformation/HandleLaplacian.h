@@ -52,8 +52,9 @@ class HandleLaplacian
 public:
   /// `edgeWeights` (#D) must be symmetric. Throws Error(SingularSystem) when an
   /// unknown vertex reaches no held one.
-  HandleLaplacian(const HandleProblem& problem, std::shared_ptr<const Eigen::VectorXd> edgeWeights,
-    Hold hold, SolverBackend backend, const ExecutionContext& context);
+  HandleLaplacian(const HandleProblem& problem,
+    const std::shared_ptr<const Eigen::VectorXd>& edgeWeights, Hold hold, SolverBackend backend,
+    const ExecutionContext& context);
 
   int NumberOfUnknowns() const { return this->UnknownCount; }
   int NumberOfLocals() const { return static_cast<int>(this->Vertices.size()); }

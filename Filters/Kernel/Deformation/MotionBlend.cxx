@@ -10,7 +10,7 @@ MotionBlend::MotionBlend(const std::vector<HandleMotion>& motions)
   for (const HandleMotion& motion : motions)
   {
     this->RotationVectors.push_back(motion.RotationVector);
-    this->Stretches.push_back(
+    this->Stretches.emplace_back(
       RotationFromVector(motion.RotationVector).transpose() * motion.Linear -
       Eigen::Matrix3d::Identity());
     this->HasStretches = this->HasStretches || !this->Stretches.back().isZero(1e-12);
