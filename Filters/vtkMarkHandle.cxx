@@ -126,18 +126,6 @@ vtkIdType Mark(vtkIntArray* handles, const cartan::PointMask& mask, int id, bool
   }
   return count;
 }
-
-// Keeps the mesh for the filters behind this one.
-struct KeptSurface
-{
-  explicit KeptSurface(std::shared_ptr<const cartan::Surface> surface)
-    : Surface(std::move(surface))
-  {
-  }
-  std::size_t GetBytes() const { return this->Surface->GetBytes(); }
-
-  std::shared_ptr<const cartan::Surface> Surface;
-};
 }
 
 // A polydata and its counterparts in the other data objects.
@@ -312,7 +300,7 @@ void vtkMarkHandle::MarkBlock(
         Grow(block.Input, this->GrowRings, this->GrowDistance, mask, context.Part(0.2, 0.9)))
   {
     run.Warn(surface->Describe("input", block.Input));
-    run.Keep<KeptSurface>(surface->Key, [&] { return std::make_unique<KeptSurface>(surface); });
+    run.KeepSurface(surface);
   }
 
   auto handles = CopyHandles(block.Input, this->HandleArrayName);

@@ -46,10 +46,11 @@ void vtkSurfaceComparison::Execute(cartan::FilterRun& run)
     "Give both the same points and cells in the same order, such as a surface before and after it "
     "was deformed.",
     run.Context().Part(0.0, 0.1));
+  run.KeepSurface(matched.Surfaces[1]); // the other one is new with every motion
   run.Warn(matched.Warning);
   run.Output()->ShallowCopy(input);
   cartan::SurfacePair pair{ matched.Mesh, matched.Cells, matched.Positions[1], matched.Positions[0],
-    cartan::KeyOfSurface(reference) };
+    matched.Surfaces[1]->Borders, cartan::KeyOfSurface(reference) };
   // Its polygons may be triangulated as the current surface's are.
   pair.ReferenceKey.AddBytes(
     matched.Mesh->GetTriangles().data(), matched.Mesh->GetTriangles().size() * sizeof(int));

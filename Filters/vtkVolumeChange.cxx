@@ -95,46 +95,98 @@ std::string DescribeSigns(double reference, double current, const std::string& m
   return reference * current < 0.0 ? "the deformation turned it inside out" : "";
 }
 
+/// What is measured before a surface is written.
+struct Changes
+{
+  Changes(const cartan::SurfacePair& pair, const cartan::ExecutionContext& context)
+    : Borders(pair.Borders)
+    , ComponentsBefore(cartan::MeasureComponents(*pair.Mesh, *pair.Reference))
+    , ComponentsNow(cartan::MeasureComponents(*pair.Mesh, *pair.Current))
+    , Enclosing(cartan::EnclosingComponents(*pair.Mesh, *pair.Reference, this->ComponentsBefore))
+    , AreasBefore(cartan::TriangleAreas(*pair.Mesh, *pair.Reference, context))
+    , AreasNow(cartan::TriangleAreas(*pair.Mesh, *pair.Current, context))
+    , Edges(cartan::CompareEdgeLengths(*pair.Mesh, *pair.Reference, *pair.Current, context))
+    , Distance(cartan::MeasureShapeDistance(*pair.Mesh, *pair.Reference, *pair.Current, context))
+  {
+  }
+
+  const cartan::CoincidentBorders& Borders;
+  std::vector<cartan::ComponentVolume> ComponentsBefore;
+  std::vector<cartan::ComponentVolume> ComponentsNow;
+  std::vector<int> Enclosing;  ///< the component around each one, -1 if there is none
+  Eigen::VectorXd AreasBefore; ///< of triangles
+  Eigen::VectorXd AreasNow;
+  cartan::EdgeLengthChange Edges;
+  cartan::ShapeDistance Distance;
+};
+
+/// How to close what looks closed; empty if nothing does.
+std::string DescribeBorders(const cartan::CoincidentBorders& borders)
+{
+  return borders.IsEmpty() ? ""
+                           : "; " + std::to_string(borders.NumberOfEdges) +
+      " border edges coincide: merge their points (Prepare Surface) to close it";
+}
+
 /// The volume of everything; NaN unless all components are closed.
-double AddVolume(const std::vector<cartan::ComponentVolume>& reference,
-  const std::vector<cartan::ComponentVolume>& current, ChangeTable& table)
+double AddVolume(const Changes& changes, ChangeTable& table)
 {
   double volumeBefore = 0.0;
   double volumeNow = 0.0;
-  int open = 0;
-  for (std::size_t i = 0; i < reference.size(); ++i)
+  std::size_t open = 0;
+  const std::size_t count = changes.ComponentsBefore.size();
+  for (std::size_t i = 0; i < count; ++i)
   {
-    volumeBefore += WithoutRounding(reference[i]);
-    volumeNow += WithoutRounding(current[i]);
-    open += reference[i].IsClosed ? 0 : 1;
+    volumeBefore += WithoutRounding(changes.ComponentsBefore[i]);
+    volumeNow += WithoutRounding(changes.ComponentsNow[i]);
+    open += changes.ComponentsBefore[i].IsClosed ? 0 : 1;
   }
   if (open > 0)
   {
-    const std::string note = reference.size() == 1 ? "the surface is open and encloses no volume"
-                                                   : std::to_string(open) + " of " +
-        std::to_string(reference.size()) + " components are open and enclose no volume";
-    table.Add("Volume", Undefined, Undefined, Undefined, note);
+    const std::string note = count == 1 ? "the surface is open and encloses no volume"
+                                        : std::to_string(open) + " of " + std::to_string(count) +
+        " components are open and enclose no volume";
+    table.Add("Volume", Undefined, Undefined, Undefined, note + DescribeBorders(changes.Borders));
     return Undefined;
   }
   return table.Add("Volume", volumeBefore, volumeNow,
-    DescribeSigns(volumeBefore, volumeNow, "the surface is oriented inwards"));
+    DescribeSigns(volumeBefore, volumeNow, "the surface is oriented inward"));
 }
 
-void AddComponents(const std::vector<cartan::ComponentVolume>& reference,
-  const std::vector<cartan::ComponentVolume>& current, ChangeTable& table)
+/// Where a closed component lies in another, and whether its orientation fits.
+std::string DescribePlace(const Changes& changes, std::size_t component)
 {
-  for (std::size_t i = 0; i < reference.size(); ++i)
+  const int around = changes.Enclosing[component];
+  const double own = changes.ComponentsBefore[component].Volume;
+  if (around < 0)
+  {
+    return own < 0.0 ? "oriented inward" : "";
+  }
+  const std::string inside = "inside component " + std::to_string(around);
+  if (own * changes.ComponentsBefore[around].Volume < 0.0)
+  {
+    return own < 0.0 ? "the wall of a cavity " + inside : "";
+  }
+  return inside +
+    " and oriented like it: its volume counts twice. A cavity's wall is oriented "
+    "the other way (Prepare Surface, Alternate Nested)";
+}
+
+void AddComponents(const Changes& changes, ChangeTable& table)
+{
+  for (std::size_t i = 0; i < changes.ComponentsBefore.size(); ++i)
   {
     const std::string quantity = "Volume of component " + std::to_string(i);
-    if (!reference[i].IsClosed)
+    if (!changes.ComponentsBefore[i].IsClosed)
     {
       table.Add(quantity, Undefined, Undefined, Undefined, "open: it encloses no volume");
       continue;
     }
-    const double before = WithoutRounding(reference[i]);
-    const double now = WithoutRounding(current[i]);
-    table.Add(quantity, before, now,
-      DescribeSigns(before, now, "oriented inwards, or the wall of a cavity"));
+    const double before = WithoutRounding(changes.ComponentsBefore[i]);
+    const double now = WithoutRounding(changes.ComponentsNow[i]);
+    const std::string place = DescribePlace(changes, i);
+    table.Add(
+      quantity, before, now, before > 0.0 && now > 0.0 ? place : DescribeSigns(before, now, place));
   }
 }
 
@@ -147,27 +199,6 @@ double TotalArea(const std::vector<cartan::ComponentVolume>& components)
   }
   return area;
 }
-
-/// What is measured before a surface is written.
-struct Changes
-{
-  Changes(const cartan::SurfacePair& pair, const cartan::ExecutionContext& context)
-    : ComponentsBefore(cartan::MeasureComponents(*pair.Mesh, *pair.Reference))
-    , ComponentsNow(cartan::MeasureComponents(*pair.Mesh, *pair.Current))
-    , AreasBefore(cartan::TriangleAreas(*pair.Mesh, *pair.Reference, context))
-    , AreasNow(cartan::TriangleAreas(*pair.Mesh, *pair.Current, context))
-    , Edges(cartan::CompareEdgeLengths(*pair.Mesh, *pair.Reference, *pair.Current, context))
-    , Distance(cartan::MeasureShapeDistance(*pair.Mesh, *pair.Reference, *pair.Current, context))
-  {
-  }
-
-  std::vector<cartan::ComponentVolume> ComponentsBefore;
-  std::vector<cartan::ComponentVolume> ComponentsNow;
-  Eigen::VectorXd AreasBefore; ///< of triangles
-  Eigen::VectorXd AreasNow;
-  cartan::EdgeLengthChange Edges;
-  cartan::ShapeDistance Distance;
-};
 
 void AddCellAreaRatio(vtkPolyData* output, const cartan::SurfacePair& pair, const Changes& changes)
 {
@@ -197,8 +228,7 @@ std::map<std::string, double> FillTable(const Changes& changes, vtkTable* output
 {
   std::map<std::string, double> results;
   ChangeTable table;
-  results["RelativeVolumeChange"] =
-    AddVolume(changes.ComponentsBefore, changes.ComponentsNow, table);
+  results["RelativeVolumeChange"] = AddVolume(changes, table);
   results["RelativeAreaChange"] =
     table.Add("Area", TotalArea(changes.ComponentsBefore), TotalArea(changes.ComponentsNow));
   const std::size_t ofNoLength = changes.Edges.ZeroLength.GetCount();
@@ -217,7 +247,7 @@ std::map<std::string, double> FillTable(const Changes& changes, vtkTable* output
     "a distance from the reference: Current is the measure");
   if (changes.ComponentsBefore.size() > 1)
   {
-    AddComponents(changes.ComponentsBefore, changes.ComponentsNow, table);
+    AddComponents(changes, table);
   }
   table.MoveTo(output);
   return results;

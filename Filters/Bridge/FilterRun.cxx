@@ -27,6 +27,13 @@ public:
   }
 };
 
+struct KeptSurface
+{
+  std::shared_ptr<const Surface> TheSurface;
+
+  std::size_t GetBytes() const { return this->TheSurface->GetBytes(); }
+};
+
 ExecutionContext MakeContext(vtkAlgorithm* algorithm)
 {
   return ExecutionContext(
@@ -103,8 +110,15 @@ std::shared_ptr<const Surface> FilterRun::ReadSurface(int port, const std::strin
 {
   const auto surface =
     cartan::ReadSurface(this->Input(port), role, this->TheContext.Part(0.0, 0.1));
+  this->KeepSurface(surface);
   this->Warn(surface->Describe(role, this->Input(port)));
   return surface;
+}
+
+void FilterRun::KeepSurface(const std::shared_ptr<const Surface>& surface)
+{
+  this->Kept.Get<KeptSurface>(
+    surface->Key, [&] { return std::make_unique<KeptSurface>(KeptSurface{ surface }); });
 }
 
 ContentKey FilterRun::SurfaceKey() const

@@ -36,8 +36,12 @@ public:
   /// VTK's threads, the filter's progress and its AbortExecute.
   const ExecutionContext& Context() const { return this->TheContext; }
 
-  /// The surface on a port; warns about unusual input.
+  /// The surface on a port, kept for the next update; warns about unusual input.
   std::shared_ptr<const Surface> ReadSurface(int port = 0, const std::string& role = "input");
+
+  /// Keeps a surface that has been read for the next update, so that it is not
+  /// read again.
+  void KeepSurface(const std::shared_ptr<const Surface>& surface);
 
   /// The key of the surface on port 0.
   ContentKey SurfaceKey() const;

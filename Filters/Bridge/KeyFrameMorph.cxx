@@ -134,6 +134,10 @@ MorphNumbers MorphAt(double t, const KeySurfaces& keys, const MorphOptions& opti
     "Key frames need the same points and cells in the same order, such as one surface in several "
     "poses.",
     run.Context().Part(0.0, 0.1));
+  for (const auto& surface : matched.Surfaces)
+  {
+    run.KeepSurface(surface);
+  }
   run.Warn(matched.Warning);
   ContentKey key = options.Settings;
   for (std::size_t k = 0; k < keys.Surfaces.size(); ++k)

@@ -151,7 +151,7 @@ MatchedSurfaces ReadMatchedSurfaces(const std::vector<vtkPolyData*>& inputs,
 {
   const Named first{ inputs.front(), roles.front() };
   MatchedSurfaces matched;
-  std::vector<std::shared_ptr<const Surface>> surfaces;
+  std::vector<std::shared_ptr<const Surface>>& surfaces = matched.Surfaces;
   // Where some are so flat that polygons cannot be triangulated, another one
   // knows how.
   std::size_t best = 0;

@@ -16,7 +16,8 @@ struct MatchedSurfaces
   /// #V x 3 each, about the surface's own origin.
   std::vector<std::shared_ptr<const Points>> Positions;
   std::vector<Eigen::Vector3d> Origins;
-  std::string Warning; ///< of all, as Surface::Describe
+  std::vector<std::shared_ptr<const Surface>> Surfaces; ///< as they were read
+  std::string Warning;                                  ///< of all, as Surface::Describe
 
   /// The first surface, with the triangles that all use.
   Surface First() const;

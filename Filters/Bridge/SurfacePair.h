@@ -13,6 +13,7 @@ struct SurfacePair
   std::shared_ptr<const Connectivity> Cells; ///< with the current surface's cell ids
   std::shared_ptr<const Points> Reference;   ///< #V x 3, about the reference's own center
   std::shared_ptr<const Points> Current;     ///< #V x 3, about the current surface's own center
+  CoincidentBorders Borders;                 ///< of the reference
   ContentKey ReferenceKey;                   ///< of the reference as it is used here
 };
 }

@@ -2,10 +2,14 @@
 #include "vtkVolumeChange.h"
 
 #include "TestSurfaces.h"
+#include "VtkTestHelpers.h"
 
 #include <gtest/gtest.h>
 
+#include "vtkPrepareSurface.h"
+
 #include "vtkCellData.h"
+#include "vtkCubeSource.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
@@ -200,7 +204,7 @@ TEST_F(VolumeChange, OrientationIsTold)
   this->Compare(Scaled(inverted, 2.0), inverted);
   EXPECT_NEAR(this->Rows()["Volume"].Reference, -1.0, 1e-12);
   EXPECT_NEAR(this->Filter->GetRelativeVolumeChange(), 7.0, 1e-12);
-  EXPECT_EQ(this->Rows()["Volume"].Note, "negative: the surface is oriented inwards");
+  EXPECT_EQ(this->Rows()["Volume"].Note, "negative: the surface is oriented inward");
 
   const surfaces::Surface bar = surfaces::Box(1.0, 1.0, 1.0);
   this->Compare(surfaces::Scaled(bar, -1.0, 1.0, 1.0), bar);
@@ -375,4 +379,51 @@ TEST_F(VolumeChange, PrintsItsState)
   std::ostringstream text;
   this->Filter->Print(text);
   EXPECT_NE(text.str().find("ComputeLocalVolume: 1"), std::string::npos);
+}
+
+TEST_F(VolumeChange, SaysWhatLiesInside)
+{
+  // A box of 4 with one of 2 inside, its wall turned either way.
+  const auto box = [](double size)
+  {
+    shapes::Shape shape = shapes::Bar(2, 2, 2, { size, size, size });
+    shape.Positions.col(2).array() -= 0.5 * size;
+    return shape;
+  };
+  const auto measure = [this](const shapes::Shape& shape)
+  {
+    const auto surface = vtktest::MakePolyData(shape);
+    this->Filter->SetInputData(surface);
+    this->Filter->SetReferenceData(surface);
+    this->Filter->Update();
+  };
+  measure(shapes::Union(box(4.0), shapes::Inverted(box(2.0))));
+  EXPECT_NEAR(this->Rows()["Volume"].Reference, 56.0, 1e-12);
+  EXPECT_EQ(this->Rows()["Volume of component 1"].Note,
+    "negative: the wall of a cavity inside component 0");
+  measure(shapes::Union(box(4.0), box(2.0)));
+  EXPECT_NEAR(this->Rows()["Volume"].Reference, 72.0, 1e-12);
+  EXPECT_NE(this->Rows()["Volume of component 1"].Note.find("inside component 0 and oriented like"),
+    std::string::npos);
+  EXPECT_EQ(this->Rows()["Volume of component 0"].Note, "");
+}
+
+TEST_F(VolumeChange, SaysHowToCloseWhatLooksClosed)
+{
+  vtkNew<vtkCubeSource> cube; // each face has points of its own
+  cube->Update();
+  this->Filter->SetInputData(cube->GetOutput());
+  this->Filter->SetReferenceData(cube->GetOutput());
+  this->Filter->Update();
+  EXPECT_TRUE(std::isnan(this->Rows()["Volume"].Reference));
+  EXPECT_NE(this->Rows()["Volume"].Note.find("24 border edges coincide"), std::string::npos);
+
+  // The advice works.
+  vtkNew<vtkPrepareSurface> prepare;
+  prepare->SetInputConnection(cube->GetOutputPort());
+  prepare->Update();
+  this->Filter->SetInputData(prepare->GetOutput());
+  this->Filter->SetReferenceData(prepare->GetOutput());
+  this->Filter->Update();
+  EXPECT_NEAR(this->Rows()["Volume"].Reference, 1.0, 1e-12);
 }
