@@ -2,7 +2,7 @@
 #include "vtkSurfaceDeformation.h"
 
 #include "Bridge/DeformationMethod.h"
-#include "Bridge/HandleMotions.h"
+#include "Bridge/MotionTable.h"
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Algebra/ConstrainedSolver.h"
@@ -23,17 +23,14 @@
 using cartan::Error;
 using cartan::ErrorCode;
 
-namespace
+namespace cartan
 {
-/// More rows than anybody types into a table.
-constexpr int MaximumNumberOfMotionRows = 100000;
-
 /// What is kept of a surface, its handles and the settings between motions.
 struct Preparation
 {
-  cartan::HandleProblem Problem;
-  cartan::DeformationMethod Method;
-  cartan::DeformedSurface Result;
+  HandleProblem Problem;
+  DeformationMethod Method;
+  DeformedSurface Result;
 
   std::size_t GetBytes() const
   {
@@ -43,7 +40,10 @@ struct Preparation
       static_cast<std::size_t>(doubles) * sizeof(double);
   }
 };
+}
 
+namespace
+{
 /// Makes no side shorter than a tenth of the longest, and the box a little larger
 /// than what it holds; `length` is the longest side of a box that is a point.
 void Widen(vtkBoundingBox& bounds, double length)
@@ -87,49 +87,11 @@ void AddTransformArrays(
 class vtkSurfaceDeformation::Internals
 {
 public:
-  std::map<int, vtkSmartPointer<vtkHandleMotion>> Motions;
-  vtkSmartPointer<vtkHandleMotion> ActiveMotion;
-  struct Row
-  {
-    double Id = 0.0;
-    vtkNew<vtkHandleMotion> Motion;
-  };
-  std::vector<std::unique_ptr<Row>> Rows;
-
+  cartan::MotionTable Motions;
   int Factorizations = 0;
   int FreePoints = 0;
   double SetupTime = 0.0;
   double MotionTime = 0.0;
-
-  cartan::MotionsById GetMotions(int activeHandle) const
-  {
-    cartan::MotionsById motions;
-    for (const auto& [id, motion] : this->Motions)
-    {
-      motions[id] = motion;
-    }
-    if (this->ActiveMotion)
-    {
-      motions[activeHandle] = this->ActiveMotion;
-    }
-    for (const auto& row : this->Rows)
-    {
-      const int id = static_cast<int>(row->Id);
-      if (id < 1 || id != row->Id)
-      {
-        throw Error(ErrorCode::BadInput,
-          "A row of the motions' table names handle " + std::to_string(row->Id) +
-            ": ids are whole numbers >= 1.");
-      }
-      if (!motions.emplace(id, row->Motion).second)
-      {
-        throw Error(ErrorCode::BadInput,
-          "Handle " + std::to_string(id) +
-            " has two motions: remove one, or its row from the motions' table.");
-      }
-    }
-    return motions;
-  }
 };
 
 vtkSurfaceDeformation::vtkSurfaceDeformation()
@@ -154,14 +116,14 @@ void vtkSurfaceDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Solver: " << this->Solver << "\n";
   os << indent << "GenerateFrameChange: " << this->GenerateFrameChange << "\n";
   os << indent << "GenerateRotationVector: " << this->GenerateRotationVector << "\n";
-  os << indent << "Motions: " << this->State->Motions.size() << "\n";
-  for (const auto& [id, motion] : this->State->Motions)
+  os << indent << "Motions: " << this->State->Motions.ById.size() << "\n";
+  for (const auto& [id, motion] : this->State->Motions.ById)
   {
     os << indent << "Motion of handle " << id << ":\n";
     motion->PrintSelf(os, indent.GetNextIndent());
   }
-  os << indent << "ActiveMotion: " << (this->State->ActiveMotion ? "set" : "(none)") << "\n";
-  os << indent << "MotionRows: " << this->State->Rows.size() << "\n";
+  os << indent << "ActiveMotion: " << (this->State->Motions.Active ? "set" : "(none)") << "\n";
+  os << indent << "MotionRows: " << this->State->Motions.Rows.size() << "\n";
 }
 
 void vtkSurfaceDeformation::SetHandleMotion(int id, vtkHandleMotion* motion)
@@ -177,24 +139,24 @@ void vtkSurfaceDeformation::SetHandleMotion(int id, vtkHandleMotion* motion)
   }
   if (motion)
   {
-    this->State->Motions[id] = motion;
+    this->State->Motions.ById[id] = motion;
   }
   else
   {
-    this->State->Motions.erase(id);
+    this->State->Motions.ById.erase(id);
   }
   this->Modified();
 }
 
 vtkHandleMotion* vtkSurfaceDeformation::GetHandleMotion(int id) const
 {
-  const auto found = this->State->Motions.find(id);
-  return found == this->State->Motions.end() ? nullptr : found->second.Get();
+  const auto found = this->State->Motions.ById.find(id);
+  return found == this->State->Motions.ById.end() ? nullptr : found->second.Get();
 }
 
 void vtkSurfaceDeformation::RemoveHandleMotion(int id)
 {
-  if (this->State->Motions.erase(id))
+  if (this->State->Motions.ById.erase(id))
   {
     this->Modified();
   }
@@ -202,10 +164,10 @@ void vtkSurfaceDeformation::RemoveHandleMotion(int id)
 
 void vtkSurfaceDeformation::RemoveAllHandleMotions()
 {
-  if (!this->State->Motions.empty() || this->State->ActiveMotion)
+  if (!this->State->Motions.ById.empty() || this->State->Motions.Active)
   {
-    this->State->Motions.clear();
-    this->State->ActiveMotion = nullptr;
+    this->State->Motions.ById.clear();
+    this->State->Motions.Active = nullptr;
     this->Modified();
   }
 }
@@ -222,54 +184,47 @@ void vtkSurfaceDeformation::SetActiveHandle(int id)
 
 void vtkSurfaceDeformation::SetActiveMotion(vtkHandleMotion* motion)
 {
-  this->SetMember(this->State->ActiveMotion, motion);
+  this->SetMember(this->State->Motions.Active, motion);
 }
 
 vtkHandleMotion* vtkSurfaceDeformation::GetActiveMotion() const
 {
-  return this->State->ActiveMotion;
+  return this->State->Motions.Active;
 }
 
 void vtkSurfaceDeformation::SetNumberOfMotionRows(int count)
 {
-  if (count < 0 || count > MaximumNumberOfMotionRows)
+  if (count < 0 || count > cartan::MotionTable::MaximumNumberOfRows)
   {
-    vtkErrorMacro(
-      "The motions' table has 0 to " << MaximumNumberOfMotionRows << " rows; got " << count << ".");
+    vtkErrorMacro("The motions' table has 0 to " << cartan::MotionTable::MaximumNumberOfRows
+                                                 << " rows; got " << count << ".");
     return;
   }
   if (count == this->GetNumberOfMotionRows())
   {
     return;
   }
-  this->State->Rows.resize(count);
-  for (auto& row : this->State->Rows)
-  {
-    if (!row)
-    {
-      row = std::make_unique<Internals::Row>();
-    }
-  }
+  this->State->Motions.ResizeRows(count);
   this->Modified();
 }
 
 int vtkSurfaceDeformation::GetNumberOfMotionRows() const
 {
-  return static_cast<int>(this->State->Rows.size());
+  return static_cast<int>(this->State->Motions.Rows.size());
 }
 
 void vtkSurfaceDeformation::SetMotionRow(int row, double id, double scaleX, double scaleY,
   double scaleZ, double angle, double axisX, double axisY, double axisZ, double centerX,
   double centerY, double centerZ, double translationX, double translationY, double translationZ)
 {
-  if (row < 0 || row >= MaximumNumberOfMotionRows)
+  if (row < 0 || row >= cartan::MotionTable::MaximumNumberOfRows)
   {
-    vtkErrorMacro(
-      "Rows are numbered from 0 to " << MaximumNumberOfMotionRows - 1 << "; got " << row << ".");
+    vtkErrorMacro("Rows are numbered from 0 to " << cartan::MotionTable::MaximumNumberOfRows - 1
+                                                 << "; got " << row << ".");
     return;
   }
   this->SetNumberOfMotionRows(std::max(row + 1, this->GetNumberOfMotionRows()));
-  Internals::Row& target = *this->State->Rows[row];
+  cartan::MotionTable::Row& target = this->State->Motions.Rows[row];
   if (target.Id != id)
   {
     target.Id = id;
@@ -337,20 +292,7 @@ double* vtkSurfaceDeformation::GetActiveHandleBounds()
 
 vtkMTimeType vtkSurfaceDeformation::GetMTime()
 {
-  vtkMTimeType time = this->Superclass::GetMTime();
-  for (const auto& entry : this->State->Motions)
-  {
-    time = std::max(time, entry.second->GetMTime());
-  }
-  if (this->State->ActiveMotion)
-  {
-    time = std::max(time, this->State->ActiveMotion->GetMTime());
-  }
-  for (const auto& row : this->State->Rows)
-  {
-    time = std::max(time, row->Motion->GetMTime());
-  }
-  return time;
+  return std::max(this->Superclass::GetMTime(), this->State->Motions.GetMTime());
 }
 
 void vtkSurfaceDeformation::ForgetResults()
@@ -398,6 +340,27 @@ cartan::HandleProblem vtkSurfaceDeformation::MakeProblem(vtkPolyData* input,
   return problem;
 }
 
+std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::FilterRun& run,
+  const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
+  const std::vector<int>& moving, cartan::ContentKey key)
+{
+  vtkPolyData* input = run.Input();
+  key.AddBytes(moving.data(), moving.size() * sizeof(int));
+  key.Add(this->ConstraintWeightArrayName);
+  key.Add(cartan::KeyOfPointArray(input, this->ConstraintWeightArrayName).GetValue());
+  this->AddSettings(key);
+  return run.Keep<cartan::Preparation>(key,
+    [&]
+    {
+      auto fresh = std::make_unique<cartan::Preparation>();
+      fresh->Problem = this->MakeProblem(input, surface, handles, moving);
+      fresh->Method = this->NewMethod(fresh->Problem,
+        static_cast<cartan::SolverBackend>(this->Solver), run.Context().Part(0.1, 0.6));
+      this->State->Factorizations += fresh->Method.Deformer->GetNumberOfFactorizations();
+      return fresh;
+    });
+}
+
 void vtkSurfaceDeformation::Execute(cartan::FilterRun& run)
 {
   static_assert(static_cast<int>(cartan::SolverBackend::Automatic) == AUTOMATIC_SOLVER &&
@@ -417,7 +380,7 @@ void vtkSurfaceDeformation::Execute(cartan::FilterRun& run)
       return std::make_unique<cartan::Handles>(
         cartan::ReadHandles(input, *surface->Mesh, this->HandleArrayName));
     });
-  const cartan::MotionsById motions = this->State->GetMotions(this->ActiveHandle);
+  const cartan::MotionsById motions = this->State->Motions.Collect(this->ActiveHandle);
   cartan::RequireMeaningfulMotions(motions, *handles);
   const auto arrays = this->KeepHandleArrays(run, *surface, *handles, key);
 
@@ -428,21 +391,7 @@ void vtkSurfaceDeformation::Execute(cartan::FilterRun& run)
   }
   std::sort(moving.begin(), moving.end());
   moving.erase(std::unique(moving.begin(), moving.end()), moving.end());
-  key.AddBytes(moving.data(), moving.size() * sizeof(int));
-  key.Add(cartan::KeyOfPointArray(input, this->ConstraintWeightArrayName).GetValue());
-  key.Add(this->ConstraintWeightArrayName);
-  this->AddSettings(key);
-  const auto prepared = run.Keep<Preparation>(key,
-    [&]
-    {
-      auto fresh = std::make_unique<Preparation>();
-      fresh->Problem = this->MakeProblem(input, surface, *handles, moving);
-      fresh->Method = this->NewMethod(fresh->Problem,
-        static_cast<cartan::SolverBackend>(this->Solver), run.Context().Part(0.1, 0.6));
-      this->State->Factorizations += fresh->Method.Deformer->GetNumberOfFactorizations();
-      return fresh;
-    });
-
+  const auto prepared = this->Prepare(run, surface, *handles, moving, key);
   cartan::SurfaceDeformer& deformer = *prepared->Method.Deformer;
   const cartan::HandleTargets targets =
     cartan::MakeTargets(prepared->Problem, surface->Origin, motions, *handles, *arrays);

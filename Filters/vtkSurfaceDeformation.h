@@ -51,6 +51,7 @@ struct DeformationMethod;
 struct HandleArrays;
 struct HandleProblem;
 struct Handles;
+struct Preparation;
 struct Surface;
 }
 
@@ -313,6 +314,9 @@ private:
   cartan::HandleProblem MakeProblem(vtkPolyData* input,
     const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
     std::vector<int> moving) const;
+  std::shared_ptr<cartan::Preparation> Prepare(cartan::FilterRun& run,
+    const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
+    const std::vector<int>& moving, cartan::ContentKey key);
   std::shared_ptr<cartan::HandleArrays> KeepHandleArrays(cartan::FilterRun& run,
     const cartan::Surface& surface, const cartan::Handles& handles, cartan::ContentKey key) const;
 
