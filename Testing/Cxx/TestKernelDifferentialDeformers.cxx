@@ -358,10 +358,10 @@ TEST(MotionBlend, IsTheIdentityAtZeroAndTheMotionAtOne)
   motion.RotationVector = { 1.0, 2.0, -0.5 };
   motion.Linear = cartan::RotationFromVector(motion.RotationVector);
   motion.Linear.col(0) *= 3.0;
-  const cartan::MotionBlend blend({ motion });
-  const double zero = 0.0;
-  const double one = 1.0;
-  EXPECT_LT((blend.At(&zero) - Eigen::Matrix3d::Identity()).norm(), 1e-14);
-  EXPECT_LT((blend.At(&one) - motion.Linear).norm(), 1e-14);
+  const cartan::Field coordinates = cartan::MotionBlend({ motion }).Coordinates();
+  const auto at = [&](double weight)
+  { return cartan::MotionBlend::FromCoordinates(weight * coordinates.row(0)); };
+  EXPECT_LT((at(0.0) - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+  EXPECT_LT((at(1.0) - motion.Linear).norm(), 1e-14);
 }
 }

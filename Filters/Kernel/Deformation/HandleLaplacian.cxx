@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace cartan
 {
@@ -151,6 +152,12 @@ Eigen::VectorXd SquaredSoftWeights(
   return squared;
 }
 
+bool StoresHandleFields(const HandleProblem& problem)
+{
+  const std::set<int> handles(problem.Handle.begin(), problem.Handle.end());
+  return static_cast<int>(handles.size() - handles.count(0)) <= problem.StoredHandles;
+}
+
 Eigen::Vector3d HandleTarget(
   const HandleProblem& problem, const HandleTargets& targets, int vertex, int handle)
 {
@@ -295,6 +302,38 @@ Field HandleLaplacian::HarmonicFields() const
       fields(i, this->MovingHandles[i]) = 1.0;
     }
   }
+  return fields;
+}
+
+Field HandleLaplacian::Spread(
+  int components, const std::function<void(int local, double* values)>& target) const
+{
+  Field fields = Field::Zero(this->NumberOfLocals(), components);
+  for (int i = this->UnknownCount; i < this->NumberOfLocals(); ++i)
+  {
+    if (this->MovingHandles[i] >= 0)
+    {
+      target(i, fields.row(i).data());
+    }
+  }
+  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(this->UnknownCount, components);
+  Eigen::RowVectorXd soft(components);
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
+    {
+      if (edge->Neighbor >= this->UnknownCount)
+      {
+        rightHandSide.row(i) += edge->Weight * fields.row(edge->Neighbor);
+      }
+    }
+    if (this->MovingHandles[i] >= 0 && this->SquaredSoftWeights[i] > 0.0)
+    {
+      target(i, soft.data());
+      rightHandSide.row(i) += 0.5 * this->SquaredSoftWeights[i] * soft;
+    }
+  }
+  fields.topRows(this->UnknownCount) = this->Solve(rightHandSide);
   return fields;
 }
 }

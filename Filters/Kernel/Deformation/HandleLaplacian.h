@@ -4,6 +4,7 @@
 #include "Algebra/ConstrainedSolver.h"
 #include "Deformation/HandleProblem.h"
 
+#include <functional>
 #include <vector>
 
 namespace cartan
@@ -26,6 +27,12 @@ Eigen::VectorXd SquaredSoftWeights(
 /// Index of each vertex's handle in HandleProblem::Moving, -1 for pinned and
 /// free vertices: #V.
 std::vector<int> MovingHandleOfVertices(const HandleProblem& problem);
+
+/// Whether methods keep a field per handle: whether the problem has no more
+/// handles than HandleProblem::StoredHandles, moving or pinned. So a deformer
+/// that serves a problem with fewer moving ones takes the same path as one made
+/// for it.
+bool StoresHandleFields(const HandleProblem& problem);
 
 /// Where a handle's vertex is to go; handle -1 is pinned.
 Eigen::Vector3d HandleTarget(
@@ -99,6 +106,11 @@ public:
   /// The functions that are 1 on one handle of HandleProblem::Moving and 0 on
   /// all others and the pinned ones, harmonic elsewhere: #locals x #Moving.
   Field HarmonicFields() const;
+
+  /// The functions, harmonic at unknown vertices, with the given values where
+  /// moving handles hold and zero where pinned ones do: #locals x components.
+  /// `target` writes the values of a local vertex.
+  Field Spread(int components, const std::function<void(int local, double* values)>& target) const;
 
   /// Solves L x = b: `rightHandSide` has a row per unknown and already contains
   /// what held neighbors and soft targets add. Returns #unknowns x k, valid until

@@ -17,23 +17,29 @@ MotionBlend::MotionBlend(const std::vector<HandleMotion>& motions)
   }
 }
 
-Eigen::Matrix3d MotionBlend::At(const double* weights) const
+Field MotionBlend::Coordinates() const
 {
-  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < this->RotationVectors.size(); ++k)
+  const Eigen::Index count = static_cast<Eigen::Index>(this->RotationVectors.size());
+  Field coordinates(count, this->HasStretches ? 12 : 3);
+  for (Eigen::Index k = 0; k < count; ++k)
   {
-    vector += weights[k] * this->RotationVectors[k];
+    coordinates.row(k).head<3>() = this->RotationVectors[k].transpose();
+    if (this->HasStretches)
+    {
+      Eigen::Map<Eigen::Matrix3d>(coordinates.row(k).data() + 3) = this->Stretches[k];
+    }
   }
-  const Eigen::Matrix3d rotation = RotationFromVector(vector);
-  if (!this->HasStretches)
+  return coordinates;
+}
+
+Eigen::Matrix3d MotionBlend::FromCoordinates(const Blend& blend)
+{
+  const Eigen::Matrix3d rotation = RotationFromVector(blend.head<3>().transpose());
+  if (blend.size() == 3)
   {
     return rotation;
   }
-  Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
-  for (std::size_t k = 0; k < this->Stretches.size(); ++k)
-  {
-    stretch += weights[k] * this->Stretches[k];
-  }
-  return rotation * stretch;
+  return rotation *
+    (Eigen::Matrix3d::Identity() + Eigen::Map<const Eigen::Matrix3d>(blend.data() + 3));
 }
 }

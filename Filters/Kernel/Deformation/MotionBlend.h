@@ -17,8 +17,13 @@ class MotionBlend
 public:
   explicit MotionBlend(const std::vector<HandleMotion>& motions);
 
-  /// `weights` has one entry per motion.
-  Eigen::Matrix3d At(const double* weights) const;
+  /// What is blended, r_k and, unless all are zero, the entries of S_k - I:
+  /// #motions x 3 or 12.
+  Field Coordinates() const;
+
+  /// The mean from the blend of the coordinates.
+  using Blend = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 12>;
+  static Eigen::Matrix3d FromCoordinates(const Blend& blend);
 
 private:
   std::vector<Eigen::Vector3d> RotationVectors;

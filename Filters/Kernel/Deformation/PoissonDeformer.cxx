@@ -64,18 +64,13 @@ PoissonDeformer::PoissonDeformer(HandleProblem problem, Propagation propagation,
   , Kind(propagation)
 {
   const TriangleMesh& mesh = *this->Problem.Mesh;
-  const HandleLaplacian& frames = *this->Frames;
-  const Field ofLocals = propagation == Propagation::Harmonic
-    ? frames.HarmonicFields()
-    : GeodesicWeights(this->Problem, frames, context.Part(0.6, 1.0));
-  this->Weights.setZero(mesh.NumberOfVertices(), ofLocals.cols());
-  for (const HandleVertex& held : this->HandleVertices)
+  if (propagation == Propagation::Harmonic)
   {
-    this->Weights(held.Vertex, held.Handle) = 1.0;
+    this->Harmonic.emplace(this->Problem, this->Frames);
   }
-  for (int i = 0; i < frames.NumberOfLocals(); ++i)
+  else
   {
-    this->Weights.row(frames.Vertex(i)) = ofLocals.row(i);
+    this->Geodesic = GeodesicWeights(this->Problem, *this->Frames, context.Part(0.6, 1.0));
   }
   for (const HandleLaplacian::Triangle& triangle : this->Positions->Triangles(this->Problem))
   {
@@ -98,19 +93,27 @@ void PoissonDeformer::ComputeTransforms(
   {
     MatrixAt(this->Transforms, held.Vertex) = targets.Motions[held.Handle].Linear;
   }
-  const MotionBlend blend(targets.Motions);
+  const Field ofHandles = MotionBlend(targets.Motions).Coordinates();
   const HandleLaplacian& frames = *this->Frames;
+  const Field ofLocals =
+    this->Harmonic ? this->Harmonic->Blend(ofHandles, context) : Field(this->Geodesic * ofHandles);
+  Field blends = Field::Zero(this->Problem.Mesh->NumberOfVertices(), ofHandles.cols());
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    blends.row(held.Vertex) = ofHandles.row(held.Handle);
+  }
+  for (int i = 0; i < frames.NumberOfLocals(); ++i)
+  {
+    blends.row(frames.Vertex(i)) = ofLocals.row(i);
+  }
   context.For(static_cast<int>(this->Triangles.size()),
     [&](int begin, int end)
     {
-      Eigen::RowVectorXd weights(this->Weights.cols());
       for (int i = begin; i < end; ++i)
       {
         const auto corners = this->Problem.Mesh->GetTriangles().row(this->Triangles[i]);
-        weights = (this->Weights.row(corners[0]) + this->Weights.row(corners[1]) +
-                    this->Weights.row(corners[2])) /
-          3.0;
-        MatrixAt(this->TriangleTransforms, this->Triangles[i]) = blend.At(weights.data());
+        MatrixAt(this->TriangleTransforms, this->Triangles[i]) = MotionBlend::FromCoordinates(
+          (blends.row(corners[0]) + blends.row(corners[1]) + blends.row(corners[2])) / 3.0);
       }
     });
   context.For(frames.NumberOfUnknowns(),
@@ -119,7 +122,7 @@ void PoissonDeformer::ComputeTransforms(
       for (int i = begin; i < end; ++i)
       {
         const int v = frames.Vertex(i);
-        MatrixAt(this->Transforms, v) = blend.At(this->Weights.row(v).data());
+        MatrixAt(this->Transforms, v) = MotionBlend::FromCoordinates(blends.row(v));
       }
     });
 }

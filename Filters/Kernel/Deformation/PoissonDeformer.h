@@ -2,6 +2,9 @@
 #pragma once
 
 #include "Deformation/FrameDeformer.h"
+#include "Deformation/HarmonicBlend.h"
+
+#include <optional>
 
 namespace cartan
 {
@@ -37,7 +40,8 @@ public:
   }
   std::size_t GetBytes() const override
   {
-    return FrameDeformer::GetBytes() + TotalBytes(this->Weights, this->Triangles);
+    return FrameDeformer::GetBytes() + (this->Harmonic ? this->Harmonic->GetBytes() : 0) +
+      TotalBytes(this->Geodesic, this->Triangles);
   }
 
 protected:
@@ -45,7 +49,8 @@ protected:
 
 private:
   Propagation Kind;
-  Field Weights; ///< #V x #Moving
+  std::optional<HarmonicBlend> Harmonic;
+  Field Geodesic; ///< #locals x #Moving, their weights; empty with harmonic ones
   /// Those around unknown positions.
   std::vector<int> Triangles;
 };

@@ -21,7 +21,7 @@ bool IsRotation(const Eigen::Matrix3d& matrix)
 RotationInvariantDeformer::RotationInvariantDeformer(
   HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
   : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.8))
-  , Harmonic(this->Frames->HarmonicFields())
+  , Harmonic(this->Problem, this->Frames)
 {
   context.Report(1.0);
 }
@@ -79,34 +79,27 @@ void RotationInvariantDeformer::ComputeTransforms(
 
   // R - I is harmonic with the values that the held vertices give, and near those
   // that softly held ones give, projected alike.
-  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(frames.NumberOfUnknowns(), 9);
-  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-  const Eigen::Map<const Eigen::Matrix<double, 1, 9>> identityRow(identity.data());
-  for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
-  {
-    for (const auto* edge = frames.EdgesBegin(i); edge != frames.EdgesEnd(i); ++edge)
+  const Field differences = frames.Spread(9,
+    [&](int local, double* values)
     {
-      if (edge->Neighbor >= frames.NumberOfUnknowns())
-      {
-        rightHandSide.row(i) +=
-          edge->Weight * (this->Transforms.row(frames.Vertex(edge->Neighbor)) - identityRow);
-      }
-    }
-    if (frames.MovingHandle(i) >= 0)
-    {
-      rightHandSide.row(i) +=
-        0.5 * frames.SquaredSoftWeight(i) * (this->Transforms.row(frames.Vertex(i)) - identityRow);
-    }
-  }
-  const Eigen::Map<const Eigen::MatrixXd> solution = frames.Solve(rightHandSide);
+      Eigen::Map<Eigen::Matrix3d>(values, 3, 3) =
+        MatrixAt(this->Transforms, frames.Vertex(local)) - Eigen::Matrix3d::Identity();
+    });
+  this->AddIdentity(differences, project, context);
+}
+
+void RotationInvariantDeformer::AddIdentity(
+  const Field& differences, bool project, const ExecutionContext& context)
+{
+  const HandleLaplacian& frames = *this->Frames;
   context.For(frames.NumberOfUnknowns(),
     [&](int begin, int end)
     {
       for (int i = begin; i < end; ++i)
       {
-        const Eigen::Matrix<double, 9, 1> difference = solution.row(i).transpose();
-        MatrixAt(this->Transforms, frames.Vertex(i)) =
-          projected(identity + Eigen::Map<const Eigen::Matrix3d>(difference.data()));
+        const Eigen::Matrix3d blend = Eigen::Matrix3d::Identity() +
+          Eigen::Map<const Eigen::Matrix3d>(differences.row(i).data());
+        MatrixAt(this->Transforms, frames.Vertex(i)) = project ? ProjectOnRotations(blend) : blend;
       }
     });
 }
@@ -135,25 +128,20 @@ void RotationInvariantDeformer::BlendMotions(
     const Eigen::Matrix3d across = identity - along;
     Eigen::Matrix3d turn;
     turn << 0.0, -axis[2], axis[1], axis[2], 0.0, -axis[0], -axis[1], axis[0], 0.0;
-    std::vector<double> cosines;
-    std::vector<double> sines;
-    for (const Eigen::Vector3d& vector : rotationVectors)
+    Field ofHandles(numberOfMoving, 2);
+    for (int k = 0; k < numberOfMoving; ++k)
     {
-      cosines.push_back(std::cos(vector.dot(axis)));
-      sines.push_back(std::sin(vector.dot(axis)));
+      const double angle = rotationVectors[k].dot(axis);
+      ofHandles.row(k) << std::cos(angle) - 1.0, std::sin(angle);
     }
+    const Field blends = this->Harmonic.Blend(ofHandles, context);
     context.For(frames.NumberOfUnknowns(),
       [&](int begin, int end)
       {
         for (int i = begin; i < end; ++i)
         {
-          double cosine = 1.0;
-          double sine = 0.0;
-          for (int k = 0; k < numberOfMoving; ++k)
-          {
-            cosine += this->Harmonic(i, k) * (cosines[k] - 1.0);
-            sine += this->Harmonic(i, k) * sines[k];
-          }
+          const double cosine = 1.0 + blends(i, 0);
+          const double sine = blends(i, 1);
           const double length = std::hypot(cosine, sine);
           MatrixAt(this->Transforms, frames.Vertex(i)) = length > 0.0
             ? Eigen::Matrix3d(along + cosine / length * across + sine / length * turn)
@@ -162,24 +150,18 @@ void RotationInvariantDeformer::BlendMotions(
       });
     return;
   }
-  context.For(frames.NumberOfUnknowns(),
-    [&](int begin, int end)
-    {
-      for (int i = begin; i < end; ++i)
-      {
-        Eigen::Matrix3d blend = identity;
-        for (int k = 0; k < numberOfMoving; ++k)
-        {
-          blend += this->Harmonic(i, k) * (motions[k].Linear - identity);
-        }
-        MatrixAt(this->Transforms, frames.Vertex(i)) = project ? ProjectOnRotations(blend) : blend;
-      }
-    });
+  Field ofHandles(numberOfMoving, 9);
+  for (int k = 0; k < numberOfMoving; ++k)
+  {
+    Eigen::Map<Eigen::Matrix3d>(ofHandles.row(k).data()) = motions[k].Linear - identity;
+  }
+  this->AddIdentity(this->Harmonic.Blend(ofHandles, context), project, context);
 }
 
 void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& context)
 {
   const HandleLaplacian& system = *this->Positions;
+  const Field& harmonic = this->Harmonic.GetWeights();
   const Points& rest = *this->Problem.Rest;
   const int numberOfUnknowns = system.NumberOfUnknowns();
   const int numberOfMoving = static_cast<int>(this->Problem.Moving.size());
@@ -197,7 +179,7 @@ void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& contex
           {
             const int j = edge->Neighbor;
             const auto neighbor = rest.row(system.Vertex(j));
-            sum += 0.5 * edge->Weight * (this->Harmonic(i, k) + this->Harmonic(j, k)) *
+            sum += 0.5 * edge->Weight * (harmonic(i, k) + harmonic(j, k)) *
               (rest.row(system.Vertex(i)) - neighbor);
             if (j >= numberOfUnknowns && system.MovingHandle(j) == k)
             {
@@ -221,7 +203,7 @@ void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& contex
     {
       still -= phi.block<1, 3>(i, 3 * k);
       this->DragFields.block<1, 3>(i, 3 + 4 * k) = phi.block<1, 3>(i, 3 * k);
-      this->DragFields(i, 6 + 4 * k) = this->Harmonic(i, k);
+      this->DragFields(i, 6 + 4 * k) = harmonic(i, k);
     }
     this->DragFields.block<1, 3>(i, 0) = still;
   }
@@ -230,7 +212,8 @@ void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& contex
 bool RotationInvariantDeformer::DeformDirectly(
   const HandleTargets& targets, Points& positions, const ExecutionContext& context)
 {
-  if (this->Positions != this->Frames || targets.IsPerVertex() || this->UsesRotations(targets))
+  if (this->Positions != this->Frames || !this->Harmonic.IsStored() || targets.IsPerVertex() ||
+    this->UsesRotations(targets))
   {
     return false;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Deformation/FrameDeformer.h"
+#include "Deformation/HarmonicBlend.h"
 
 namespace cartan
 {
@@ -35,8 +36,8 @@ enum class FrameProjection
 ///
 ///   x = phi_0 + sum_k [A_k phi_k + h_k t_k],  phi_0 + sum_k phi_k = p,
 ///
-/// with phi_k = L^-1 b(h_k I). A motion without projection is this sum. The
-/// weights w generalize the graph Laplacian (w = 1) of the paper.
+/// with phi_k = L^-1 b(h_k I). A motion without projection is this sum, unless there are many
+/// handles (HarmonicBlend). The weights w generalize the graph Laplacian (w = 1) of the paper.
 class RotationInvariantDeformer : public FrameDeformer
 {
 public:
@@ -45,7 +46,7 @@ public:
 
   std::size_t GetBytes() const override
   {
-    return FrameDeformer::GetBytes() + TotalBytes(this->Harmonic, this->DragFields);
+    return FrameDeformer::GetBytes() + this->Harmonic.GetBytes() + TotalBytes(this->DragFields);
   }
 
   void SetFrameProjection(FrameProjection projection) { this->Projection = projection; }
@@ -58,10 +59,11 @@ protected:
 private:
   bool UsesRotations(const HandleTargets& targets) const;
   void BlendMotions(const HandleTargets& targets, bool project, const ExecutionContext& context);
+  void AddIdentity(const Field& differences, bool project, const ExecutionContext& context);
   void ComputeDragFields(const ExecutionContext& context);
 
   FrameProjection Projection = FrameProjection::Automatic;
-  Field Harmonic;   ///< #locals x #Moving: h_k
+  HarmonicBlend Harmonic;
   Field DragFields; ///< #unknowns x 3 + 4 #Moving: phi_0, then phi_k, h_k
 };
 }

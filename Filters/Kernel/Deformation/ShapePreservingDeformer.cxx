@@ -42,7 +42,7 @@ double DirichletEnergy(const HandleLaplacian::Triangle& triangle, const Field& e
 ShapePreservingDeformer::ShapePreservingDeformer(
   HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
   : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.9))
-  , Harmonic(this->Frames->HarmonicFields())
+  , Harmonic(this->Problem, this->Frames)
   , IterationSolver(backend)
 {
   context.Report(1.0);
@@ -64,10 +64,10 @@ Eigen::Matrix3d ShapePreservingDeformer::Stretch(
 }
 
 Field ShapePreservingDeformer::Spread(const HandleTargets& targets, int components,
-  const std::function<void(const HandleVertex&, double*)>& coordinates) const
+  const std::function<void(const HandleVertex&, double*)>& coordinates,
+  const ExecutionContext& context) const
 {
   const HandleLaplacian& frames = *this->Frames;
-  Field values = Field::Zero(frames.NumberOfLocals(), components);
   if (targets.RotationVectors.rows() == 0 && targets.Transforms.rows() == 0)
   {
     Field ofHandles(static_cast<Eigen::Index>(targets.Motions.size()), components);
@@ -75,39 +75,12 @@ Field ShapePreservingDeformer::Spread(const HandleTargets& targets, int componen
     {
       coordinates({ -1, static_cast<int>(k) }, ofHandles.row(k).data());
     }
-    values = this->Harmonic * ofHandles;
-    return values;
+    return this->Harmonic.Blend(ofHandles, context);
   }
-  const auto target = [&](int local)
-  {
-    Eigen::RowVectorXd row(components);
-    coordinates({ frames.Vertex(local), frames.MovingHandle(local) }, row.data());
-    return row;
-  };
-  for (int i = frames.NumberOfUnknowns(); i < frames.NumberOfLocals(); ++i)
-  {
-    if (frames.MovingHandle(i) >= 0)
-    {
-      values.row(i) = target(i);
-    }
-  }
-  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(frames.NumberOfUnknowns(), components);
-  for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
-  {
-    for (const auto* edge = frames.EdgesBegin(i); edge != frames.EdgesEnd(i); ++edge)
-    {
-      if (edge->Neighbor >= frames.NumberOfUnknowns())
-      {
-        rightHandSide.row(i) += edge->Weight * values.row(edge->Neighbor);
-      }
-    }
-    if (frames.MovingHandle(i) >= 0 && frames.SquaredSoftWeight(i) > 0.0)
-    {
-      rightHandSide.row(i) += 0.5 * frames.SquaredSoftWeight(i) * target(i);
-    }
-  }
-  values.topRows(frames.NumberOfUnknowns()) = frames.Solve(rightHandSide);
-  return values;
+  return frames.Spread(components,
+    [&](int local, double* values) {
+      coordinates({ frames.Vertex(local), frames.MovingHandle(local) }, values);
+    });
 }
 
 void ShapePreservingDeformer::ComputeTransforms(
@@ -131,9 +104,11 @@ void ShapePreservingDeformer::ComputeTransforms(
   this->SharedAxis = FindSharedAxis(rotationVectors, axis);
   if (this->SharedAxis)
   {
-    const Field angle = this->Spread(targets, 1,
+    const Field angle = this->Spread(
+      targets, 1,
       [&](const HandleVertex& held, double* value)
-      { *value = this->RotationVector(targets, held).dot(axis); });
+      { *value = this->RotationVector(targets, held).dot(axis); },
+      context);
     context.For(frames.NumberOfUnknowns(),
       [&](int begin, int end)
       {
@@ -162,7 +137,8 @@ void ShapePreservingDeformer::ComputeTransforms(
           " by 360 degrees or more, which only rotations about one axis can do: give all handles "
           "the same axis, or turn in several steps.");
     }
-    Field eta = this->Spread(targets, 3,
+    Field eta = this->Spread(
+      targets, 3,
       [&](const HandleVertex& held, double* value)
       {
         const Eigen::Vector3d rotation = this->RotationVector(targets, held);
@@ -170,7 +146,8 @@ void ShapePreservingDeformer::ComputeTransforms(
         Eigen::Map<Eigen::Vector3d>(value, 3) = angle > 0.0
           ? Eigen::Vector3d(2.0 * std::tan(angle / 4.0) / angle * rotation)
           : Eigen::Vector3d(Eigen::Vector3d::Zero());
-      });
+      },
+      context);
     this->Iterations = 1;
     if (this->MaximumIterations > 1)
     {
@@ -190,10 +167,11 @@ void ShapePreservingDeformer::ComputeTransforms(
       });
   }
 
-  this->BlendStretches(targets);
+  this->BlendStretches(targets, context);
 }
 
-void ShapePreservingDeformer::BlendStretches(const HandleTargets& targets)
+void ShapePreservingDeformer::BlendStretches(
+  const HandleTargets& targets, const ExecutionContext& context)
 {
   const auto isRigid = [&](const HandleVertex& held)
   { return this->Stretch(targets, held).isIdentity(1e-9); };
@@ -211,12 +189,14 @@ void ShapePreservingDeformer::BlendStretches(const HandleTargets& targets)
     return;
   }
   const HandleLaplacian& frames = *this->Frames;
-  const Field blends = this->Spread(targets, 9,
+  const Field blends = this->Spread(
+    targets, 9,
     [&](const HandleVertex& held, double* value)
     {
       Eigen::Map<Eigen::Matrix3d>(value, 3, 3) =
         this->Stretch(targets, held) - Eigen::Matrix3d::Identity();
-    });
+    },
+    context);
   for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
   {
     auto transform = MatrixAt(this->Transforms, frames.Vertex(i));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Deformation/FrameDeformer.h"
+#include "Deformation/HarmonicBlend.h"
 
 namespace cartan
 {
@@ -58,7 +59,7 @@ public:
   std::size_t GetBytes() const override
   {
     return FrameDeformer::GetBytes() + this->IterationSolver.GetBytes() +
-      TotalBytes(this->Harmonic, this->Triangles);
+      this->Harmonic.GetBytes() + TotalBytes(this->Triangles);
   }
 
 protected:
@@ -68,8 +69,9 @@ private:
   Eigen::Vector3d RotationVector(const HandleTargets& targets, const HandleVertex& held) const;
   Eigen::Matrix3d Stretch(const HandleTargets& targets, const HandleVertex& held) const;
   Field Spread(const HandleTargets& targets, int components,
-    const std::function<void(const HandleVertex&, double*)>& coordinates) const;
-  void BlendStretches(const HandleTargets& targets);
+    const std::function<void(const HandleVertex&, double*)>& coordinates,
+    const ExecutionContext& context) const;
+  void BlendStretches(const HandleTargets& targets, const ExecutionContext& context);
   Field Iterate(Field eta, const ExecutionContext& context);
   double Energy(const Field& eta) const;
 
@@ -80,7 +82,7 @@ private:
   double Residual = 0.0;
   bool Converged = true;
 
-  Field Harmonic; ///< #locals x #Moving: h_k
+  HarmonicBlend Harmonic;
 
   /// Empty until an iteration needs them.
   std::vector<HandleLaplacian::Triangle> Triangles;
