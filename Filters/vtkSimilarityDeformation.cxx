@@ -18,13 +18,13 @@ void vtkSimilarityDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Reconstruction: " << this->Reconstruction << "\n";
   os << indent << "Refits: " << this->Refits << "\n";
   os << indent << "GenerateScaleFactor: " << this->GenerateScaleFactor << "\n";
-  os << indent << "NumberOfDisplacedPoints: " << this->NumberOfDisplacedPoints << "\n";
+  os << indent << "NumberOfFlatPoints: " << this->NumberOfFlatPoints << "\n";
 }
 
 void vtkSimilarityDeformation::ForgetResults()
 {
   this->Superclass::ForgetResults();
-  this->NumberOfDisplacedPoints = 0;
+  this->NumberOfFlatPoints = 0;
 }
 
 void vtkSimilarityDeformation::AddSettings(cartan::ContentKey& settings) const
@@ -63,7 +63,7 @@ cartan::DeformationMethod vtkSimilarityDeformation::NewMethod(const cartan::Hand
   };
   method.Decorate = [this, similarity](const cartan::DeformedSurface&, cartan::FilterRun& run)
   {
-    this->NumberOfDisplacedPoints = similarity->GetNumberOfDisplacedVertices();
+    this->NumberOfFlatPoints = similarity->GetNumberOfFlatVertices();
     if (this->GenerateScaleFactor)
     {
       cartan::AddPointArray(run.Output(), "ScaleFactor", similarity->GetScaleFactors());

@@ -131,10 +131,10 @@ public:
   ///@}
 
   /**
-   * Of the last update: the points that lie in one plane with their neighbors
-   * and were displaced for the first solve.
+   * Of the last update: the points that lie in one plane with their neighbors,
+   * where the image of the normal is an unknown of the first solve.
    */
-  vtkGetMacro(NumberOfDisplacedPoints, int);
+  vtkGetMacro(NumberOfFlatPoints, int);
 
 protected:
   vtkSimilarityDeformation() = default;
@@ -152,7 +152,7 @@ private:
   int Reconstruction = EDGE_FORM;
   int Refits = 0;
   bool GenerateScaleFactor = false;
-  int NumberOfDisplacedPoints = 0;
+  int NumberOfFlatPoints = 0;
 };
 
 #endif

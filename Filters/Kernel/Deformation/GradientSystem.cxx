@@ -2,6 +2,7 @@
 #include "Deformation/GradientSystem.h"
 
 #include "Differential/Laplacian.h"
+#include "Mesh/TriangleShape.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -12,6 +13,11 @@ namespace cartan
 {
 namespace
 {
+/// (h sum_j |w_ij|)^2 / m of a regular ring of cotangent weights, 12 h^2 over
+/// sqrt(3) / 2 h^2: with it the rows of regular meshes have the same scale with
+/// all weights.
+constexpr double RegularMassFactor = 13.856406460551018;
+
 /// A connected part of the unknown vertices, with what its gradients see of the
 /// handles.
 struct UnknownPart
@@ -62,6 +68,29 @@ UnknownPart GatherPart(const TriangleMesh& mesh, const GradientConstraints& cons
   return part;
 }
 
+/// A third of the area of the triangles around each vertex: #V. A triangle
+/// without area counts as EdgeWeights counts it, equilateral.
+Eigen::VectorXd VertexMasses(const TriangleMesh& mesh, const Points& rest)
+{
+  Eigen::VectorXd masses = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
+  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto corners = mesh.GetTriangles().row(t);
+    const Eigen::Vector3d a = rest.row(corners[0]);
+    const Eigen::Vector3d b = rest.row(corners[1]);
+    const Eigen::Vector3d c = rest.row(corners[2]);
+    const double longest = LongestEdgeSquared(a, b, c);
+    const double twiceArea = (b - a).cross(c - a).norm();
+    const double area =
+      HasArea(twiceArea, longest) ? 0.5 * twiceArea : std::sqrt(3.0) / 4.0 * longest;
+    for (int k = 0; k < 3; ++k)
+    {
+      masses[corners[k]] += area / 3.0;
+    }
+  }
+  return masses;
+}
+
 /// Whether points are not all in one plane. An affine map that keeps held
 /// positions costs nothing, so they must leave only the identity.
 bool SpansSpace(const Points& rest, const std::vector<int>& vertices)
@@ -91,7 +120,7 @@ GradientSystem::GradientSystem(const HandleProblem& problem, int coherenceRings,
 {
   const GradientConstraints constraints = this->ReadConstraints(problem, constrainTransforms);
   this->RequireDeterminedSurface(problem, constraints);
-  this->FindScales(*problem.Mesh, *problem.Rest);
+  this->FindScales(problem);
   this->Gradients = std::make_unique<RingGradients>(
     *problem.Mesh, *problem.Rest, constraints, std::max(1, coherenceRings), context.Part(0.0, 0.3));
   this->Factorize(*problem.Mesh, context.Part(0.3, 1.0));
@@ -112,14 +141,12 @@ GradientConstraints GradientSystem::ReadConstraints(
   constraints.IsUnknown = UnknownVertices(problem, hold);
   this->SoftPositions = SquaredSoftWeights(problem, constraints.IsUnknown, hold);
   constraints.IsGiven.assign(mesh.NumberOfVertices(), 0);
-  constraints.IsUntouched.assign(mesh.NumberOfVertices(), 0);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     const bool isMoving = this->MovingHandles[v] >= 0;
     const bool isHeld = !problem.SoftWeights.size() || problem.SoftWeights[v] > 0.0;
     if (mesh.IsUsed(v) && problem.Handle[v] > 0 && isHeld)
     {
-      constraints.IsUntouched[v] = 1;
       constraints.IsGiven[v] = constrainTransforms || !isMoving;
     }
   }
@@ -165,9 +192,10 @@ void GradientSystem::RequireDeterminedSurface(
   }
 }
 
-/// h_i and s_i = 1 / (h_i sum_j |w_ij|).
-void GradientSystem::FindScales(const TriangleMesh& mesh, const Points& rest)
+void GradientSystem::FindScales(const HandleProblem& problem)
 {
+  const TriangleMesh& mesh = *problem.Mesh;
+  const Points& rest = *problem.Rest;
   this->EdgeLengths.setZero(mesh.NumberOfVertices());
   Eigen::VectorXd weightSums = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
@@ -179,11 +207,15 @@ void GradientSystem::FindScales(const TriangleMesh& mesh, const Points& rest)
     }
   }
   // A vertex in one place with all its neighbors has no scale of its own.
-  this->EdgeLengths = this->EdgeLengths.cwiseMax(1e-6 * this->EdgeLengths.mean());
+  this->EdgeLengths =
+    (this->EdgeLengths.array() > 0.0).select(this->EdgeLengths, this->EdgeLengths.mean()).eval();
   this->RowScales.setZero(mesh.NumberOfVertices());
+  const bool isIntegrated = problem.Weights == LaplacianWeights::Cotangent;
+  const Eigen::VectorXd masses = isIntegrated ? VertexMasses(mesh, rest) : Eigen::VectorXd();
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    const double unit = this->EdgeLengths[v] * weightSums[v];
+    const double unit = isIntegrated ? std::sqrt(RegularMassFactor * masses[v])
+                                     : this->EdgeLengths[v] * weightSums[v];
     this->RowScales[v] = unit > 0.0 ? 1.0 / unit : 0.0;
   }
 }
@@ -220,8 +252,7 @@ SparseRows<double> GradientSystem::ResidualRows(const TriangleMesh& mesh) const
     const int active = static_cast<int>(a);
     for (const auto* entry = laplacians.Begin(active); entry != laplacians.End(active); ++entry)
     {
-      delta += entry->Coefficient *
-        gradients.DisplacedRest().row(gradients.Vertex(entry->Column)).transpose();
+      delta += entry->Coefficient * gradients.RestValues().row(entry->Column).transpose();
       residuals.Add(entry->Column, entry->Coefficient);
     }
     const int row = gradients.Row(v);
@@ -276,10 +307,17 @@ void GradientSystem::Factorize(const TriangleMesh& mesh, const ExecutionContext&
   const int size = gradients.NumberOfColumns();
   const SparseRows<Eigen::Vector3d> differences = this->DifferenceRows(context);
   context.Report(0.1);
-  const SparseMatrix matrix = NormalMatrix(size, gradients.NumberOfUnknowns(),
-    this->ResidualRows(mesh), gradients.Rows(), differences, context);
+  // The free columns come first unless there are normals.
+  const SparseMatrix matrix =
+    NormalMatrix(size, gradients.NumberOfNormals() ? size : gradients.NumberOfUnknowns(),
+      this->ResidualRows(mesh), gradients.Rows(), differences, context);
   context.Report(0.3);
-  Anchors anchors = Anchors::After(gradients.NumberOfUnknowns(), size);
+  Anchors anchors;
+  anchors.IsHard.resize(size);
+  for (int column = 0; column < size; ++column)
+  {
+    anchors.IsHard[column] = !gradients.IsUnknownColumn(column);
+  }
   anchors.Vertices.assign(size, -1);
   this->Stiffness.setZero(size);
   for (int column = 0; column < gradients.NumberOfPositions(); ++column)
@@ -298,9 +336,9 @@ void GradientSystem::Solve(
   const HandleProblem& problem, const HandleTargets& targets, const ExecutionContext& context)
 {
   this->ReadTargets(problem, targets);
-  if (targets.IsPerVertex())
+  if (targets.IsPerVertex() || !StoresHandleFields(problem))
   {
-    this->SolveColumns(problem, targets);
+    this->SolveColumns();
     return;
   }
   if (this->DragFields.rows() == 0)
@@ -313,13 +351,17 @@ void GradientSystem::Solve(
 void GradientSystem::ReadTargets(const HandleProblem& problem, const HandleTargets& targets)
 {
   const RingGradients& gradients = *this->Gradients;
-  for (int column = gradients.NumberOfUnknowns(); column < gradients.NumberOfPositions(); ++column)
+  this->Values = gradients.RestValues();
+  for (int column = 0; column < gradients.NumberOfPositions(); ++column)
   {
     const int v = gradients.Vertex(column);
-    this->Values.row(column) =
-      HandleTarget(problem, targets, v, this->MovingHandles[v]).transpose();
+    if (column >= gradients.NumberOfUnknowns() || this->Stiffness[column] > 0.0)
+    {
+      this->Values.row(column) =
+        HandleTarget(problem, targets, v, this->MovingHandles[v]).transpose();
+    }
   }
-  int column = gradients.NumberOfPositions();
+  int column = gradients.FirstGiven();
   for (const int v : gradients.GivenVertices())
   {
     this->Values.middleRows<3>(column) =
@@ -328,19 +370,13 @@ void GradientSystem::ReadTargets(const HandleProblem& problem, const HandleTarge
   }
 }
 
-void GradientSystem::SolveColumns(const HandleProblem& problem, const HandleTargets& targets)
+void GradientSystem::SolveColumns()
 {
-  const RingGradients& gradients = *this->Gradients;
-  for (int column = 0; column < gradients.NumberOfUnknowns(); ++column)
-  {
-    if (this->Stiffness[column] > 0.0)
-    {
-      const int v = gradients.Vertex(column);
-      this->Values.row(column) =
-        HandleTarget(problem, targets, v, this->MovingHandles[v]).transpose();
-    }
-  }
-  this->System.Solve(Field::Zero(gradients.NumberOfColumns(), 3), this->Values);
+  // For what changes: no motion leaves the rest shape to the bit.
+  const Field& rest = this->Gradients->RestValues();
+  this->Values -= rest;
+  this->System.Solve(Field::Zero(rest.rows(), 3), this->Values);
+  this->Values += rest;
 }
 
 void GradientSystem::ComputeDragFields(const HandleProblem& problem)
@@ -363,7 +399,7 @@ void GradientSystem::ComputeDragFields(const HandleProblem& problem)
     target << problem.Rest->row(v), 1.0;
     fields.block<1, 4>(column, 4 * handle) = target;
   }
-  int column = gradients.NumberOfPositions();
+  int column = gradients.FirstGiven();
   for (const int v : gradients.GivenVertices())
   {
     if (this->MovingHandles[v] >= 0)
@@ -373,42 +409,41 @@ void GradientSystem::ComputeDragFields(const HandleProblem& problem)
     column += 3;
   }
   this->System.Solve(zero, fields);
-  this->DragFields = fields.topRows(gradients.NumberOfUnknowns());
+  const std::vector<int>& unknowns = this->System.GetFree();
+  this->DragFields.resize(static_cast<Eigen::Index>(unknowns.size()), fields.cols());
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+  {
+    this->DragFields.row(static_cast<Eigen::Index>(i)) = fields.row(unknowns[i]);
+  }
 }
 
 void GradientSystem::BlendDragFields(const HandleTargets& targets, const ExecutionContext& context)
 {
-  const RingGradients& gradients = *this->Gradients;
-  context.For(gradients.NumberOfUnknowns(),
+  const std::vector<int>& unknowns = this->System.GetFree();
+  context.For(static_cast<int>(unknowns.size()),
     [&](int begin, int end)
     {
-      for (int column = begin; column < end; ++column)
+      for (int i = begin; i < end; ++i)
       {
         // The motions' identities together leave the rest shape.
-        Eigen::Vector3d position =
-          gradients.DisplacedRest().row(gradients.Vertex(column)).transpose();
+        Eigen::Vector3d value = this->Gradients->RestValues().row(unknowns[i]).transpose();
         for (std::size_t k = 0; k < targets.Motions.size(); ++k)
         {
-          const double* phi = this->DragFields.row(column).data() + 4 * k;
+          const double* phi = this->DragFields.row(i).data() + 4 * k;
           const Eigen::Map<const Eigen::Vector3d> along(phi);
-          position +=
+          value +=
             targets.Motions[k].Linear * along - along + phi[3] * targets.Motions[k].Translation;
         }
-        this->Values.row(column) = position.transpose();
+        this->Values.row(unknowns[i]) = value.transpose();
       }
     });
 }
 
-void GradientSystem::PullBack(const Points& rest, Points& positions) const
+void GradientSystem::WritePositions(Points& positions) const
 {
-  const RingGradients& gradients = *this->Gradients;
-  const Points& displaced = gradients.DisplacedRest();
-  for (int column = 0; column < gradients.NumberOfUnknowns(); ++column)
+  for (int column = 0; column < this->Gradients->NumberOfUnknowns(); ++column)
   {
-    const int v = gradients.Vertex(column);
-    // v~ = v~' + M (v - v'), section 3.3
-    positions.row(v) =
-      this->Values.row(column) + (rest.row(v) - displaced.row(v)) * this->Gradient(v).transpose();
+    positions.row(this->Gradients->Vertex(column)) = this->Values.row(column);
   }
 }
 }

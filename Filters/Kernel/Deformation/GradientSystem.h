@@ -36,7 +36,8 @@ public:
   SparseRows<double> LaplacianRows(const TriangleMesh& mesh) const;
 
   /// Finds the values of all columns for the problem that the system was made
-  /// for. Without targets vertex by vertex this is a sum over the handles.
+  /// for. Without targets vertex by vertex, and where fields are stored
+  /// (StoresHandleFields), this is a sum over the handles.
   void Solve(
     const HandleProblem& problem, const HandleTargets& targets, const ExecutionContext& context);
 
@@ -47,8 +48,8 @@ public:
     return this->Gradients->Evaluate(this->Gradients->Row(vertex), this->Values);
   }
 
-  /// Writes the unknown vertices' positions, displaced ones pulled back.
-  void PullBack(const Points& rest, Points& positions) const;
+  /// Writes the unknown vertices' positions.
+  void WritePositions(Points& positions) const;
 
   int GetNumberOfFactorizations() const { return this->System.GetNumberOfFactorizations(); }
   std::size_t GetBytes() const
@@ -62,12 +63,12 @@ private:
   GradientConstraints ReadConstraints(const HandleProblem& problem, bool constrainTransforms);
   void RequireDeterminedSurface(
     const HandleProblem& problem, const GradientConstraints& constraints) const;
-  void FindScales(const TriangleMesh& mesh, const Points& rest);
+  void FindScales(const HandleProblem& problem);
   SparseRows<double> ResidualRows(const TriangleMesh& mesh) const;
   SparseRows<Eigen::Vector3d> DifferenceRows(const ExecutionContext& context) const;
   void Factorize(const TriangleMesh& mesh, const ExecutionContext& context);
   void ReadTargets(const HandleProblem& problem, const HandleTargets& targets);
-  void SolveColumns(const HandleProblem& problem, const HandleTargets& targets);
+  void SolveColumns();
   void ComputeDragFields(const HandleProblem& problem);
   void BlendDragFields(const HandleTargets& targets, const ExecutionContext& context);
 

@@ -231,7 +231,7 @@ void SimilarityDeformer::Reconstruct(
   result.Positions = HandlePositions(this->Problem, targets, this->System.GetMovingHandles());
   if (this->Reconstruction == SimilarityReconstruction::Affine)
   {
-    this->System.PullBack(*this->Problem.Rest, result.Positions);
+    this->System.WritePositions(result.Positions);
   }
   else
   {

@@ -30,16 +30,19 @@ enum class SimilarityReconstruction
 ///
 /// (Eqs. 5 to 7) with D(v)_i = sum_j w_ij (v_j - v_i), delta = D(v). The paper
 /// has s_i = 1 and normalized weights, which makes the result depend on the
-/// length unit. Here s_i = 1 / (h_i sum_j |w_ij|) with h_i the mean length of
-/// the edges at i: all residuals are numbers without unit, and large and small
-/// triangles of a graded mesh count alike. M_c = W_c is put in where a handle
-/// gives W_c, however softly it holds positions: their weights w add
-/// w^2 |v~_c - u_c|^2 / h_c^2 to the sum (and what FrameDeformer says with
-/// EdgeForm); w = 0 holds nothing.
+/// length unit. Here all residuals are numbers without unit, and large and small
+/// triangles of a graded mesh count alike. With cotangent weights D is integrated
+/// over the area m_i around i, and s_i^2 = c / m_i makes the first sum that over
+/// the surface of the squared pointwise residual: two vertices next to each other
+/// count as one in their place, c as for other weights on regular meshes. Else
+/// s_i = 1 / (h_i sum_j |w_ij|) with h_i the mean length of the edges at i. M_c = W_c is put in
+/// where a handle gives W_c, however softly it holds positions: their weights w add w^2 |v~_c -
+/// u_c|^2 / h_c^2 to the sum (and what FrameDeformer says with EdgeForm); w = 0 holds nothing.
 ///
 /// The minimum is linear in each handle's motion: v~ = v + sum_k [(A_k - I) phi_k
 /// + h_k t_k], with four numbers per vertex and handle, so that a drag solves
-/// nothing here. (Targets that differ from vertex to vertex are solved for.)
+/// nothing here. (Targets that differ from vertex to vertex are solved for, and
+/// motions of many handles, see HandleProblem::StoredHandles.)
 ///
 /// Then shear is removed: R_i is the rotation closest to M_i, s_i^2 the mean of
 /// its squared singular values (section 4), T_i = R_i or s_i R_i, and the
@@ -114,10 +117,8 @@ public:
                                       : this->ServesSameMoving(problem);
   }
 
-  int GetNumberOfDisplacedVertices() const
-  {
-    return this->System.GetGradients().GetNumberOfDisplacedVertices();
-  }
+  /// The vertices that are in one plane with their neighbors.
+  int GetNumberOfFlatVertices() const { return this->System.GetGradients().NumberOfNormals(); }
 
 private:
   /// Puts the surface together from transforms that are given.

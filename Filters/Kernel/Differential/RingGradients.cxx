@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/RingGradients.h"
 
-#include "Mesh/Geometry.h"
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -36,49 +34,51 @@ Eigen::Matrix3d RingMoments(const TriangleMesh& mesh, const Points& points, int 
   return moments;
 }
 
-bool IsDegenerate(const Eigen::Matrix3d& moments)
+enum class RingShape
+{
+  Spatial,
+  Flat,    ///< in a plane
+  Singular ///< in a line or a point
+};
+
+RingShape ShapeOf(const Eigen::Matrix3d& moments)
 {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(moments, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d eigenvalues = solver.eigenvalues();
-  return !(eigenvalues[0] * RingGradients::DegenerateCondition > eigenvalues[2]);
+  const Eigen::Vector3d least = RingGradients::DegenerateCondition * solver.eigenvalues();
+  const double largest = solver.eigenvalues()[2];
+  return least[0] > largest ? RingShape::Spatial
+    : least[1] > largest    ? RingShape::Flat
+                            : RingShape::Singular;
+}
+
+/// The pseudo-inverse of the moments of a flat ring, whose normal is written.
+Eigen::Matrix3d InverseInPlane(const Eigen::Matrix3d& moments, Eigen::Vector3d& normal)
+{
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
+  normal = solver.eigenvectors().col(0);
+  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+  for (int axis = 1; axis < 3; ++axis)
+  {
+    const Eigen::Vector3d direction = solver.eigenvectors().col(axis);
+    inverse += direction * direction.transpose() / solver.eigenvalues()[axis];
+  }
+  return inverse;
 }
 }
 
 RingGradients::RingGradients(const TriangleMesh& mesh, const Points& rest,
   const GradientConstraints& constraints, int coherenceRings, const ExecutionContext& context)
-  : Displaced(rest)
-  , PositionColumns(mesh.NumberOfVertices(), -1)
+  : PositionColumns(mesh.NumberOfVertices(), -1)
   , RowOfVertex(mesh.NumberOfVertices(), -1)
 {
-  this->DisplaceDegenerate(mesh, constraints, VertexNormals(mesh, rest, context));
-  context.Report(0.3);
   this->NumberPositions(mesh, constraints);
-  this->BuildRows(mesh, constraints, context);
+  context.Report(0.3);
+  this->BuildRows(mesh, rest, constraints, context);
   context.Report(0.6);
   this->FindCoherentRows(mesh, constraints, coherenceRings);
+  this->FindRestValues(rest);
   context.Report(1.0);
-}
-
-void RingGradients::DisplaceDegenerate(
-  const TriangleMesh& mesh, const GradientConstraints& constraints, const Points& normals)
-{
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    if (!constraints.IsUnknown[v] || constraints.IsUntouched[v] || mesh.Valence(v) < 3 ||
-      !IsDegenerate(RingMoments(mesh, this->Displaced, v)))
-    {
-      continue;
-    }
-    // v' = v + s_disp (mean length of the edges) n, Eq. 8
-    double length = 0.0;
-    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-    {
-      length += (this->Displaced.row(v) - this->Displaced.row(mesh.Neighbor(d))).norm();
-    }
-    this->Displaced.row(v) += Displacement * length / mesh.Valence(v) * normals.row(v);
-    ++this->DisplacedCount;
-  }
 }
 
 void RingGradients::NumberPositions(
@@ -146,40 +146,52 @@ int RingGradients::AddGivenRow(int vertex)
   return this->RowOfVertex[vertex];
 }
 
-void RingGradients::BuildRows(
-  const TriangleMesh& mesh, const GradientConstraints& constraints, const ExecutionContext& context)
+void RingGradients::BuildRows(const TriangleMesh& mesh, const Points& rest,
+  const GradientConstraints& constraints, const ExecutionContext& context)
 {
   // With u_k = v_k - v_0 and the sum over k of V~_i V_i^T written out, a
   // neighbor k has (V_i V_i^T)^-1 (u_k - u_i / |N|) and i itself
   // (V_i V_i^T)^-1 u_i, because the u_k of the neighbors sum to zero and the
   // deformed mean is moved by every neighbor.
   std::vector<Row3> rows(this->Active.size());
+  std::vector<Eigen::Vector3d> normals(this->Active.size(), Eigen::Vector3d::Zero());
   context.For(static_cast<int>(this->Active.size()),
     [&](int begin, int end)
     {
       for (int a = begin; a < end; ++a)
       {
         const int v = this->Active[a];
-        const Eigen::Matrix3d moments = RingMoments(mesh, this->Displaced, v);
-        if (constraints.IsGiven[v] || IsDegenerate(moments))
+        const Eigen::Matrix3d moments = RingMoments(mesh, rest, v);
+        const RingShape shape = ShapeOf(moments);
+        if (constraints.IsGiven[v] || shape == RingShape::Singular || mesh.Valence(v) < 3)
         {
           continue;
         }
-        const Eigen::Matrix3d inverse = moments.inverse();
-        const Eigen::Vector3d mean = MeanOfNeighbors(mesh, this->Displaced, v);
-        const Eigen::Vector3d own = inverse * (this->Displaced.row(v).transpose() - mean);
+        const Eigen::Matrix3d inverse = shape == RingShape::Flat
+          ? InverseInPlane(moments, normals[a])
+          : Eigen::Matrix3d(moments.inverse());
+        const Eigen::Vector3d mean = MeanOfNeighbors(mesh, rest, v);
+        const Eigen::Vector3d own = inverse * (rest.row(v).transpose() - mean);
         rows[a].push_back({ this->PositionColumns[v], own });
         for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
         {
           const int w = mesh.Neighbor(d);
           rows[a].push_back({ this->PositionColumns[w],
-            inverse * (this->Displaced.row(w).transpose() - mean) - own / mesh.Valence(v) });
+            inverse * (rest.row(w).transpose() - mean) - own / mesh.Valence(v) });
         }
       }
     });
+  for (std::size_t a = 0; a < rows.size(); ++a)
+  {
+    if (!normals[a].isZero())
+    {
+      rows[a].push_back({ this->FirstGiven(), normals[a] });
+      this->Normals.push_back(normals[a]);
+    }
+  }
 
   std::vector<int> borrowing;
-  for (std::size_t a = 0; a < this->Active.size(); ++a)
+  for (std::size_t a = 0; a < rows.size(); ++a)
   {
     const int v = this->Active[a];
     if (constraints.IsGiven[v])
@@ -195,6 +207,39 @@ void RingGradients::BuildRows(
       borrowing.push_back(v);
     }
   }
+  this->BorrowRows(mesh, constraints, std::move(borrowing));
+}
+
+RingGradients::Row3 RingGradients::MeanRow(const std::vector<int>& lenders) const
+{
+  Row3 sum;
+  for (const int row : lenders)
+  {
+    for (const auto* entry = this->Gradients.Begin(row); entry != this->Gradients.End(row); ++entry)
+    {
+      sum.push_back({ entry->Column, entry->Coefficient / static_cast<double>(lenders.size()) });
+    }
+  }
+  std::sort(
+    sum.begin(), sum.end(), [](const auto& a, const auto& b) { return a.Column < b.Column; });
+  Row3 merged;
+  for (const auto& entry : sum)
+  {
+    if (!merged.empty() && merged.back().Column == entry.Column)
+    {
+      merged.back().Coefficient += entry.Coefficient;
+    }
+    else
+    {
+      merged.push_back(entry);
+    }
+  }
+  return merged;
+}
+
+void RingGradients::BorrowRows(
+  const TriangleMesh& mesh, const GradientConstraints& constraints, std::vector<int> borrowing)
+{
   // In rounds, so that the mean is over neighbors that did not borrow in the
   // same round: the result must not depend on the order of the vertices.
   while (!borrowing.empty())
@@ -221,31 +266,7 @@ void RingGradients::BuildRows(
         left.push_back(v);
         continue;
       }
-      Row3 sum;
-      for (const int row : lenders)
-      {
-        for (const auto* entry = this->Gradients.Begin(row); entry != this->Gradients.End(row);
-             ++entry)
-        {
-          sum.push_back(
-            { entry->Column, entry->Coefficient / static_cast<double>(lenders.size()) });
-        }
-      }
-      std::sort(
-        sum.begin(), sum.end(), [](const auto& a, const auto& b) { return a.Column < b.Column; });
-      Row3 merged;
-      for (const auto& entry : sum)
-      {
-        if (!merged.empty() && merged.back().Column == entry.Column)
-        {
-          merged.back().Coefficient += entry.Coefficient;
-        }
-        else
-        {
-          merged.push_back(entry);
-        }
-      }
-      borrowed.emplace_back(v, std::move(merged));
+      borrowed.emplace_back(v, this->MeanRow(lenders));
     }
     if (borrowed.empty())
     {
@@ -264,6 +285,23 @@ void RingGradients::BuildRows(
       this->AddRow(v, false, row);
     }
     borrowing = std::move(left);
+  }
+}
+
+void RingGradients::FindRestValues(const Points& rest)
+{
+  this->ValuesAtRest.resize(this->NumberOfColumns(), 3);
+  for (int column = 0; column < this->NumberOfPositions(); ++column)
+  {
+    this->ValuesAtRest.row(column) = rest.row(this->Vertices[column]);
+  }
+  for (int i = 0; i < this->NumberOfNormals(); ++i)
+  {
+    this->ValuesAtRest.row(this->NumberOfPositions() + i) = this->Normals[i].transpose();
+  }
+  for (int column = this->FirstGiven(); column < this->NumberOfColumns(); column += 3)
+  {
+    this->ValuesAtRest.middleRows<3>(column).setIdentity();
   }
 }
 

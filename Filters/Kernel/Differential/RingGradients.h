@@ -11,9 +11,8 @@ namespace cartan
 /// What is known of each vertex before deformation gradients are set up: #V each.
 struct GradientConstraints
 {
-  std::vector<char> IsUnknown;   ///< its position is solved for
-  std::vector<char> IsGiven;     ///< its gradient is not made from positions but given
-  std::vector<char> IsUntouched; ///< it belongs to a handle and must not be displaced
+  std::vector<char> IsUnknown; ///< its position is solved for
+  std::vector<char> IsGiven;   ///< its gradient is not made from positions but given
 };
 
 /// The deformation gradients of Fu, Au, Tai, Effective Derivation of Similarity
@@ -24,16 +23,22 @@ struct GradientConstraints
 ///   M_i = V~_i V_i^T (V_i V_i^T)^-1                                   (Eq. 4)
 ///
 /// is linear in the deformed positions v~. Where V_i V_i^T is singular, because
-/// i and its neighbors are coplanar, i is displaced along its normal (Eq. 8).
-/// That is done one vertex after the other, each tested with its neighbors
-/// where they are by then: displaced all at once, a flat part would stay flat.
-/// Vertices of handles stay; they, corners with two neighbors, and whatever
-/// stays singular, take the mean of the neighbors' gradients.
+/// i and its neighbors are in one plane of normal n_i, the positions say what
+/// becomes of the plane alone, and the image q_i of the normal is an unknown of
+/// its own:
+///
+///   M_i = V~_i V_i^T (V_i V_i^T)^+ + q_i n_i^T.
+///
+/// (Eq. 8 of the paper displaces such vertices along their normals, one after
+/// the other, which leaves flat surfaces and breaks mirror symmetries.) Corners
+/// with two neighbors and rings in a line take the mean of the neighbors'
+/// gradients.
 ///
 /// Gradients are rows over *columns*, numbered
 ///
 ///   - positions of unknown vertices, increasing,
 ///   - positions of held vertices that occur,
+///   - the images q_i of the normals of flat rings,
 ///   - three for each vertex of given gradient W: its columns W e_1, W e_2, W e_3,
 ///
 /// which all have three values (x, y, z), so that M_i = sum_c y_c m_ic^T with
@@ -41,13 +46,8 @@ struct GradientConstraints
 class RingGradients
 {
 public:
-  /// The factor s_disp of Eq. 8: sqrt 3 makes V_i V_i^T of a regular ring of six
-  /// as large along the normal as in the plane. The paper has 0.2, with which
-  /// gradients are a little more uneven on grids whose diagonals all point the
-  /// same way; elsewhere the result is all but the same from 0.2 to 10.
-  static constexpr double Displacement = 1.7320508;
-  /// The condition number of V_i V_i^T that makes a vertex degenerate (section
-  /// 3.3).
+  /// The condition number of V_i V_i^T, in space or in the plane, that makes a
+  /// vertex degenerate (section 3.3).
   static constexpr double DegenerateCondition = 2.0e5;
 
   /// `rest` is #V x 3. Throws Error(BadInput) when a part of the surface is so
@@ -59,8 +59,23 @@ public:
   int NumberOfPositions() const { return static_cast<int>(this->Vertices.size()); }
   int NumberOfColumns() const
   {
-    return this->NumberOfPositions() + 3 * static_cast<int>(this->Givens.size());
+    return this->NumberOfPositions() + this->NumberOfNormals() +
+      3 * static_cast<int>(this->Givens.size());
   }
+  /// The vertices whose ring is flat.
+  int NumberOfNormals() const { return static_cast<int>(this->Normals.size()); }
+  /// The first column of given gradients.
+  int FirstGiven() const { return this->NumberOfPositions() + this->NumberOfNormals(); }
+  /// Whether a column is solved for.
+  bool IsUnknownColumn(int column) const
+  {
+    return column < this->UnknownCount ||
+      (column >= this->NumberOfPositions() && column < this->FirstGiven());
+  }
+
+  /// The values of the columns at rest: #columns x 3, positions, normals and
+  /// unit vectors. All gradients of them are the identity.
+  const Field& RestValues() const { return this->ValuesAtRest; }
 
   /// The mesh's vertex of a position's column, and the column of a vertex's
   /// position; -1 where it does not occur.
@@ -101,35 +116,33 @@ public:
     return gradient;
   }
 
-  /// The rest positions with degenerate vertices displaced: #V x 3.
-  const Points& DisplacedRest() const { return this->Displaced; }
-  int GetNumberOfDisplacedVertices() const { return this->DisplacedCount; }
-
   std::size_t GetBytes() const
   {
-    return TotalBytes(this->Displaced, this->Vertices, this->PositionColumns, this->Givens,
-      this->Active, this->RowOfVertex, this->VertexOfRow, this->IsGivenRow, this->Gradients,
-      this->Coherent);
+    return TotalBytes(this->ValuesAtRest, this->Vertices, this->PositionColumns, this->Normals,
+      this->Givens, this->Active, this->RowOfVertex, this->VertexOfRow, this->IsGivenRow,
+      this->Gradients, this->Coherent);
   }
 
 private:
   using Row3 = std::vector<SparseRows<Eigen::Vector3d>::Entry>;
 
-  void DisplaceDegenerate(
-    const TriangleMesh& mesh, const GradientConstraints& constraints, const Points& normals);
   void NumberPositions(const TriangleMesh& mesh, const GradientConstraints& constraints);
-  void BuildRows(const TriangleMesh& mesh, const GradientConstraints& constraints,
-    const ExecutionContext& context);
+  void BuildRows(const TriangleMesh& mesh, const Points& rest,
+    const GradientConstraints& constraints, const ExecutionContext& context);
+  void BorrowRows(
+    const TriangleMesh& mesh, const GradientConstraints& constraints, std::vector<int> borrowing);
+  Row3 MeanRow(const std::vector<int>& lenders) const;
+  void FindRestValues(const Points& rest);
   void FindCoherentRows(
     const TriangleMesh& mesh, const GradientConstraints& constraints, int rings);
   int AddGivenRow(int vertex);
   void AddRow(int vertex, bool isGiven, const Row3& row);
 
-  Points Displaced;
-  int DisplacedCount = 0;
+  Field ValuesAtRest;
   int UnknownCount = 0;
   std::vector<int> Vertices;
   std::vector<int> PositionColumns; // #V
+  std::vector<Eigen::Vector3d> Normals;
   std::vector<int> Givens;
   std::vector<int> Active;
   std::vector<int> RowOfVertex; // #V
