@@ -260,7 +260,7 @@ Matrices VertexFrames(
     throw Error(ErrorCode::BadInput,
       "The surface has " + withoutNormal.Describe("point", "points") +
         " without a normal, because their triangles have no area or fold back on each other: "
-        "remove such triangles, for example with the Clean filter.");
+        "repair them with vtkPrepareSurface (Prepare Surface), Tolerance above 0.");
   }
   Matrices frames(mesh.NumberOfVertices(), 9);
   context.For(mesh.NumberOfVertices(),
