@@ -277,7 +277,10 @@ TEST(DifferentialDeformers, FactorizeOnceForAllMotions)
   for (const auto& [name, method] : AllMethods(bar.Problem))
   {
     const int before = method->GetNumberOfFactorizations();
-    EXPECT_EQ(before, name == "implicit" ? 2 : 1) << name;
+    // Implicit rotations have a system of their own, and so have frames that are
+    // spread where the base of the thin bar is small.
+    const bool hasSecond = name == "implicit" || name == "smoothness 1" || name == "smoothness 2";
+    EXPECT_EQ(before, hasSecond ? 2 : 1) << name;
     cartan::DeformedSurface result;
     for (int motion = 0; motion < 10; ++motion)
     {

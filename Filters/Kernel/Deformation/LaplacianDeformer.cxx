@@ -55,9 +55,8 @@ LaplacianDeformer::LaplacianDeformer(HandleProblem problem, LaplacianRotations r
   , MovingHandles(MovingHandleOfVertices(this->Problem))
 {
   // M^-1 L p, whose rows up to the unknowns' neighbors are complete.
-  const Points integrated = this->System.GetLaplacian() * this->System.Gather(*this->Problem.Rest);
-  this->Differential =
-    (this->System.GetInverseMass().asDiagonal() * integrated).topRows(this->NumberOfRows());
+  this->Differential = this->System.Differential(this->System.Gather(*this->Problem.Rest))
+                         .topRows(this->NumberOfRows());
   this->Transforms = Identities(this->NumberOfRows());
   this->FindRings();
   if (rotations == LaplacianRotations::Implicit)
@@ -156,7 +155,8 @@ void LaplacianDeformer::PrepareImplicit(const ExecutionContext& context)
     normal, this->System.GetAnchors().Repeated(3), context.Part(0.3, 1.0));
 }
 
-void LaplacianDeformer::EstimateRotations(const Points& current, const ExecutionContext& context)
+void LaplacianDeformer::EstimateRotations(
+  const Points& displacements, const ExecutionContext& context)
 {
   const Points& rest = *this->Problem.Rest;
   context.For(this->NumberOfRows(),
@@ -170,91 +170,111 @@ void LaplacianDeformer::EstimateRotations(const Points& current, const Execution
         for (const int w : ring)
         {
           restMean += rest.row(w).transpose();
-          mean += current.row(w).transpose();
+          mean += displacements.row(w).transpose();
         }
         restMean /= static_cast<double>(ring.size());
         mean /= static_cast<double>(ring.size());
         Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+        Eigen::Matrix3d change = Eigen::Matrix3d::Zero();
         for (const int w : ring)
         {
-          covariance += (current.row(w).transpose() - mean) * (rest.row(w) - restMean.transpose());
+          const Eigen::RowVector3d before = rest.row(w) - restMean.transpose();
+          covariance += before.transpose() * before;
+          change += (displacements.row(w).transpose() - mean) * before;
         }
-        MatrixAt(this->Transforms, row) = ProjectOnRotations(covariance);
+        // Exact where nothing moves: differential coordinates next to short edges
+        // would make much of the rounding of a fit.
+        MatrixAt(this->Transforms, row) = change.isZero(0.0)
+          ? Eigen::Matrix3d::Identity()
+          : ProjectOnRotations(covariance + change);
       }
     });
 }
 
-void LaplacianDeformer::SolveImplicitly(const Points& positions)
+void LaplacianDeformer::SolveImplicitly(const Points& displacements)
 {
-  const Points locals = this->System.Gather(positions);
-  // Three unknowns side by side for each local vertex.
+  const Points locals = this->System.Gather(displacements);
+  // Three unknowns side by side for each local vertex. The rest fulfills the
+  // equations, so displacements have no right-hand side.
   Field unknowns = Eigen::Map<const Field>(locals.data(), locals.size(), 1);
   this->ImplicitSystem.Solve(Field::Zero(unknowns.rows(), 1), unknowns);
   for (int row = 0; row < this->NumberOfRows(); ++row)
   {
     const std::vector<int>& ring = this->Rings[row];
-    Eigen::VectorXd ringPositions(3 * ring.size());
+    Eigen::VectorXd ofRing(3 * ring.size());
     for (std::size_t k = 0; k < ring.size(); ++k)
     {
-      ringPositions.segment<3>(3 * static_cast<Eigen::Index>(k)) =
+      ofRing.segment<3>(3 * static_cast<Eigen::Index>(k)) =
         unknowns.middleRows<3>(3 * static_cast<Eigen::Index>(ring[k]));
     }
-    const Eigen::Vector4d similarity = this->Fits[row] * ringPositions;
-    const double s = similarity[0];
+    const Eigen::Vector4d change = this->Fits[row] * ofRing;
+    if (change.isZero(0.0))
+    {
+      MatrixAt(this->Transforms, row).setIdentity();
+      continue;
+    }
+    const double s = 1.0 + change[0];
     Eigen::Matrix3d transform;
-    transform << s, -similarity[3], similarity[2], similarity[3], s, -similarity[1], -similarity[2],
-      similarity[1], s;
+    transform << s, -change[3], change[2], change[3], s, -change[1], -change[2], change[1], s;
     MatrixAt(this->Transforms, row) = ProjectOnRotations(transform);
   }
 }
 
-/// L T d; `positions` (#V x 3) has the handles' places and gets the unknowns'.
-void LaplacianDeformer::SolveRotated(Points& positions) const
+/// L (T - I) d is what displacements have on the right where positions have L T d;
+/// `displacements` (#V x 3) has the handles' and gets the unknowns'.
+void LaplacianDeformer::SolveRotated(Points& displacements) const
 {
-  Points rotated = Points::Zero(this->System.NumberOfLocals(), 3);
+  Points turned = Points::Zero(this->System.NumberOfLocals(), 3);
   for (int row = 0; row < this->NumberOfRows(); ++row)
   {
     const Eigen::Vector3d differential = this->Differential.row(row);
-    rotated.row(row) = (MatrixAt(this->Transforms, row) * differential).transpose();
+    turned.row(row) = (MatrixAt(this->Transforms, row) * differential - differential).transpose();
   }
-  this->System.Solve(this->System.GetLaplacian() * rotated, positions);
+  this->System.Solve(this->System.GetLaplacian() * turned, displacements);
 }
 
 void LaplacianDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
   const int numberOfVertices = this->Problem.Mesh->NumberOfVertices();
+  const std::vector<int>& vertices = this->System.GetVertices();
   this->Transforms = Identities(this->NumberOfRows());
   result.FrameScale.setOnes(numberOfVertices);
   result.Positions = HandlePositions(this->Problem, targets, this->MovingHandles);
+  Points displacements = result.Positions - *this->Problem.Rest;
   // The targets of softly held vertices, which each solve overwrites.
-  const Points targetsOfLocals = this->System.Gather(result.Positions);
+  const Points targetsOfLocals = this->System.Gather(displacements);
   const auto solve = [&]()
   {
     for (int i = 0; i < this->System.NumberOfUnknowns(); ++i)
     {
-      result.Positions.row(this->System.GetVertices()[i]) = targetsOfLocals.row(i);
+      displacements.row(vertices[i]) = targetsOfLocals.row(i);
     }
-    this->SolveRotated(result.Positions);
+    this->SolveRotated(displacements);
   };
   if (this->Rotations == LaplacianRotations::Implicit)
   {
-    this->SolveImplicitly(result.Positions);
+    this->SolveImplicitly(displacements);
   }
   solve();
   const int rounds = this->Rotations == LaplacianRotations::Estimated ? this->Rounds : 0;
   for (int round = 0; round < rounds; ++round)
   {
     context.Report(static_cast<double>(round) / rounds);
-    this->EstimateRotations(result.Positions, context);
+    this->EstimateRotations(displacements, context);
     solve();
+  }
+  for (int i = 0; i < this->System.NumberOfUnknowns(); ++i)
+  {
+    result.Positions.row(vertices[i]) =
+      this->Problem.Rest->row(vertices[i]) + displacements.row(vertices[i]);
   }
   if (wantTransforms)
   {
     result.Transforms = Identities(numberOfVertices);
     for (int row = 0; row < this->NumberOfRows(); ++row)
     {
-      result.Transforms.row(this->System.GetVertices()[row]) = this->Transforms.row(row);
+      result.Transforms.row(vertices[row]) = this->Transforms.row(row);
     }
   }
   context.Report(1.0);

@@ -27,6 +27,9 @@ enum class LaplacianRotations
 /// Laplacian Surface Editing, 2004, Eq. 7 of the survey). Its linearized
 /// rotations change the size; a second solve takes the rotation of each T_i and
 /// leaves its scale.
+///
+/// All solves are for displacements from the rest, so that rounding is in parts of
+/// the motion and none leaves every point exactly where it is.
 class LaplacianDeformer : public SurfaceDeformer
 {
 public:
@@ -38,6 +41,8 @@ public:
 
   void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
     const ExecutionContext& context) override;
+
+  std::string GetWarning() const override { return this->System.GetWarning(); }
 
   int GetNumberOfFactorizations() const override
   {
@@ -60,9 +65,9 @@ private:
   void FindRings();
   void PrepareImplicit(const ExecutionContext& context);
   SparseMatrix ImplicitEquations();
-  void EstimateRotations(const Points& current, const ExecutionContext& context);
-  void SolveImplicitly(const Points& positions);
-  void SolveRotated(Points& positions) const;
+  void EstimateRotations(const Points& displacements, const ExecutionContext& context);
+  void SolveImplicitly(const Points& displacements);
+  void SolveRotated(Points& displacements) const;
 
   LaplacianRotations Rotations;
   PolyharmonicSystem System;

@@ -4,6 +4,11 @@
 #include "Algebra/Rotation.h"
 #include "Differential/RotationFit.h"
 
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
 namespace cartan
 {
 namespace
@@ -27,36 +32,156 @@ Eigen::Vector3d RingNormal(const TriangleMesh& mesh, const Points& points, int v
                                    : Eigen::Vector3d(Eigen::Vector3d::Zero());
 }
 
-/// What FitRotations has at one vertex, at no cost for the others.
-Eigen::Matrix3d FitRotation(
-  const TriangleMesh& mesh, const Points& reference, const Points& current, int v)
+/// The radius of a one-ring across its narrower direction: in a round ring, where
+/// half of the squared edges is along each direction, that of the ring.
+double RingRadius(const TriangleMesh& mesh, const Points& points, int v)
+{
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  {
+    const Eigen::RowVector3d edge = points.row(mesh.Neighbor(d)) - points.row(v);
+    covariance += edge.transpose() * edge;
+  }
+  const int valence = mesh.RingEnd(v) - mesh.RingBegin(v);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spectrum(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(2.0 * std::max(0.0, spectrum.eigenvalues()[1]) / std::max(1, valence));
+}
+
+/// What FitRotations has at one vertex, at no cost for the others, minus the
+/// identity; exactly zero where the displacements are all the same.
+Eigen::Matrix3d FitChange(const TriangleMesh& mesh, const Points& reference, const Points& current,
+  const Points& displacements, int v)
 {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double size = 0.0;
+  bool isStill = true;
   for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
   {
-    const Eigen::RowVector3d before = reference.row(mesh.Neighbor(d)) - reference.row(v);
-    const Eigen::RowVector3d after = current.row(mesh.Neighbor(d)) - current.row(v);
+    const int w = mesh.Neighbor(d);
+    const Eigen::RowVector3d before = reference.row(w) - reference.row(v);
+    const Eigen::RowVector3d change = displacements.row(w) - displacements.row(v);
+    const Eigen::RowVector3d after = before + change;
     covariance += after.transpose() * before;
     size += before.norm() * after.norm();
+    isStill = isStill && change.isZero(0.0);
+  }
+  if (isStill || !(size > 0.0))
+  {
+    return Eigen::Matrix3d::Zero();
   }
   // The edges of a flat ring leave the rotation to rounding; the normal settles it.
   covariance += size * RingNormal(mesh, current, v) * RingNormal(mesh, reference, v).transpose();
-  return size > 0.0 ? ProjectOnRotations(covariance / size)
-                    : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  return ProjectOnRotations(covariance / size) - Eigen::Matrix3d::Identity();
 }
 }
 
 MultiresolutionDeformer::MultiresolutionDeformer(
   HandleProblem problem, int order, SolverBackend backend, const ExecutionContext& context)
   : SurfaceDeformer(RequirePositions(std::move(problem), "Multiresolution editing"))
-  , System(this->Problem, order, backend, context.Part(0.0, 0.9))
+  , System(this->Problem, order, backend, context.Part(0.0, 0.8))
+  , Spreading(backend)
+  , Warning(System.GetWarning())
   , MovingHandles(MovingHandleOfVertices(this->Problem))
   , Zero(Points::Zero(this->System.NumberOfLocals(), 3))
-  , RestBase(*this->Problem.Rest)
+  , RestBase(Points::Zero(this->Problem.Rest->rows(), 3))
 {
-  this->System.Solve(this->Zero, this->RestBase);
+  // K (x + w) = 0 with handles at rest.
+  this->System.Solve(-this->System.Apply(this->System.Gather(*this->Problem.Rest)), this->RestBase);
+  this->RestBase += *this->Problem.Rest;
+  this->PrepareSpreading(context.Part(0.8, 1.0));
   context.Report(1.0);
+}
+
+/// Finds the vertices whose rings in the base are too small for their details, and
+/// makes the system of the functions on them that are harmonic on the graph.
+void MultiresolutionDeformer::PrepareSpreading(const ExecutionContext& context)
+{
+  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const Points& rest = *this->Problem.Rest;
+  const std::vector<int>& vertices = this->System.GetVertices();
+  const int numberOfLocals = this->System.NumberWithin(1);
+  Anchors anchors = Anchors::After(0, numberOfLocals);
+  // Next to nothing, which decides only where no other frame is around.
+  anchors.Stiffness = Eigen::VectorXd::Constant(numberOfLocals, 1e-8);
+  IdSample collapsed;
+  for (int i = 0; i < this->System.NumberOfUnknowns(); ++i)
+  {
+    const int v = vertices[i];
+    const double detail = (rest.row(v) - this->RestBase.row(v)).norm();
+    const double radius = RingRadius(mesh, this->RestBase, v);
+    if (detail > LongestDetail * radius)
+    {
+      anchors.IsHard[i] = 0;
+      ++this->NumberOfSpread;
+      if (radius < SmallestRing * RingRadius(mesh, rest, v))
+      {
+        collapsed.Add(v);
+      }
+    }
+  }
+  if (this->NumberOfSpread == 0)
+  {
+    return;
+  }
+  if (!collapsed.IsEmpty())
+  {
+    this->Warning += (this->Warning.empty() ? "" : " ") +
+      ("The smooth base has collapsed at " + collapsed.Describe("point", "points") +
+        ": it is smaller than a tenth of the surface there, as that of limbs without handles is. "
+        "Their details turn with the base around them. Mark handles there, or use a method without "
+        "a base, such as Rotation Invariant Deformation.");
+  }
+  anchors.Vertices.assign(vertices.begin(), vertices.begin() + numberOfLocals);
+  std::vector<Eigen::Triplet<double>> entries;
+  const SparseMatrix& laplacian = this->System.GetLaplacian();
+  for (int i = 0; i < numberOfLocals; ++i)
+  {
+    for (SparseMatrix::InnerIterator entry(laplacian, i); entry; ++entry)
+    {
+      if (entry.index() != i && entry.index() < numberOfLocals)
+      {
+        entries.emplace_back(static_cast<int>(entry.index()), i, -1.0);
+        entries.emplace_back(i, i, 1.0);
+      }
+    }
+  }
+  SparseMatrix graph(numberOfLocals, numberOfLocals);
+  graph.setFromTriplets(entries.begin(), entries.end());
+  this->Spreading.Factorize(graph, std::move(anchors), context);
+}
+
+/// The base's local frame turns as its one-ring and normal do.
+void MultiresolutionDeformer::FitFrames(
+  const Points& base, const Points& displacements, const ExecutionContext& context)
+{
+  // Frames of held vertices are needed to spread from alone.
+  const int numberOfFrames =
+    this->NumberOfSpread ? this->System.NumberWithin(1) : this->System.NumberOfUnknowns();
+  const std::vector<int>& vertices = this->System.GetVertices();
+  this->Changes.resize(numberOfFrames, 9);
+  context.For(numberOfFrames,
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        MatrixAt(this->Changes, i) =
+          FitChange(*this->Problem.Mesh, this->RestBase, base, displacements, vertices[i]);
+      }
+    });
+  if (this->NumberOfSpread == 0)
+  {
+    return;
+  }
+  this->Spreading.Solve(Field::Zero(numberOfFrames, 9), this->Changes);
+  for (const int i : this->Spreading.GetFree())
+  {
+    Eigen::Map<Eigen::Matrix3d> change = MatrixAt(this->Changes, i);
+    if (!change.isZero(0.0))
+    {
+      change =
+        ProjectOnRotations(Eigen::Matrix3d::Identity() + change) - Eigen::Matrix3d::Identity();
+    }
+  }
 }
 
 void MultiresolutionDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
@@ -65,36 +190,23 @@ void MultiresolutionDeformer::Deform(const HandleTargets& targets, bool wantTran
   const Points& rest = *this->Problem.Rest;
   result.Positions = HandlePositions(this->Problem, targets, this->MovingHandles);
   result.FrameScale.setOnes(rest.rows());
-  this->System.Solve(this->Zero, result.Positions);
+  Points displacements = result.Positions - rest;
+  this->System.Solve(this->Zero, displacements);
+  const Points base = this->RestBase + displacements;
   context.Report(0.5);
   if (wantTransforms)
   {
-    result.Transforms =
-      FitRotations(*this->Problem.Mesh, this->RestBase, result.Positions, context);
+    result.Transforms = FitRotations(*this->Problem.Mesh, this->RestBase, base, context);
   }
-  // The base's local frame turns as its one-ring and normal do.
+  this->FitFrames(base, displacements, context);
   const std::vector<int>& vertices = this->System.GetVertices();
-  const int numberOfUnknowns = this->System.NumberOfUnknowns();
-  this->Rotations.resize(numberOfUnknowns, 9);
-  context.For(numberOfUnknowns,
-    [&](int begin, int end)
-    {
-      for (int i = begin; i < end; ++i)
-      {
-        MatrixAt(this->Rotations, i) =
-          FitRotation(*this->Problem.Mesh, this->RestBase, result.Positions, vertices[i]);
-      }
-    });
-  context.For(numberOfUnknowns,
-    [&](int begin, int end)
-    {
-      for (int i = begin; i < end; ++i)
-      {
-        const int v = vertices[i];
-        const Eigen::Vector3d detail = (rest.row(v) - this->RestBase.row(v)).transpose();
-        result.Positions.row(v) += (MatrixAt(this->Rotations, i) * detail).transpose();
-      }
-    });
+  for (int i = 0; i < this->System.NumberOfUnknowns(); ++i)
+  {
+    const int v = vertices[i];
+    const Eigen::Vector3d detail = (rest.row(v) - this->RestBase.row(v)).transpose();
+    result.Positions.row(v) =
+      rest.row(v) + displacements.row(v) + (MatrixAt(this->Changes, i) * detail).transpose();
+  }
   context.Report(1.0);
 }
 }

@@ -9,10 +9,23 @@ namespace cartan
 /// Modeling on Arbitrary Meshes, 1998; Sorkine, Differential Representations for
 /// Mesh Processing, 2006, section 4.2): a smooth base that solves L^k x = 0
 /// between the handles, and the detail as offsets in the base's local frames.
-/// The base follows the handles; its frames take the detail along.
+/// The base follows the handles; its frames take the detail along. The base is
+/// solved for by its displacements from the rest.
+///
+/// A base need not be like the surface: that of a limb without handles is nearly a
+/// point. Where the details are long against the base's one-rings, frames of these
+/// rings say nothing, and the frames are spread harmonically from around instead.
 class MultiresolutionDeformer : public SurfaceDeformer
 {
 public:
+  /// The longest detail, in parts of the radius of its one-ring in the base, that a
+  /// frame of this ring takes along.
+  static constexpr double LongestDetail = 10.0;
+
+  /// The radius of a one-ring in the base, in parts of that in the surface, below
+  /// which the base counts as collapsed.
+  static constexpr double SmallestRing = 0.1;
+
   /// `order` is the smoothness k of the base: 1 membrane, 2 thin plate, 3.
   MultiresolutionDeformer(HandleProblem problem, int order,
     SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
@@ -20,22 +33,35 @@ public:
   void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
     const ExecutionContext& context) override;
 
+  std::string GetWarning() const override { return this->Warning; }
+
+  /// The vertices whose frames are spread from around.
+  int GetNumberOfSpreadFrames() const { return this->NumberOfSpread; }
+
   int GetNumberOfFactorizations() const override
   {
-    return this->System.GetNumberOfFactorizations();
+    return this->System.GetNumberOfFactorizations() + this->Spreading.GetNumberOfFactorizations();
   }
   int GetNumberOfFreeVertices() const override { return this->System.NumberOfUnknowns(); }
   std::size_t GetBytes() const override
   {
-    return this->Problem.GetBytes() + this->System.GetBytes() +
-      TotalBytes(this->MovingHandles, this->Zero, this->RestBase, this->Rotations);
+    return this->Problem.GetBytes() + this->System.GetBytes() + this->Spreading.GetBytes() +
+      TotalBytes(this->MovingHandles, this->Zero, this->RestBase, this->Changes);
   }
 
 private:
+  void PrepareSpreading(const ExecutionContext& context);
+  void FitFrames(const Points& base, const Points& displacements, const ExecutionContext& context);
+
   PolyharmonicSystem System;
+  AnchoredSystem Spreading; ///< of frames; not factorized where none is spread
+  int NumberOfSpread = 0;
+  std::string Warning;
   std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
   Points Zero;                    ///< #locals x 3, the right-hand side
   Points RestBase;                ///< #V x 3
-  Matrices Rotations;             ///< #unknowns x 9, of the base's local frames
+  /// The frames' rotations minus the identity, of the unknowns and the locals next
+  /// to them: #x 9.
+  Matrices Changes;
 };
 }

@@ -3,11 +3,15 @@
 
 #include "Differential/LaplaceOperator.h"
 
+#include <iomanip>
+#include <sstream>
+
 namespace cartan
 {
 PolyharmonicSystem::PolyharmonicSystem(
   const HandleProblem& problem, int order, SolverBackend backend, const ExecutionContext& context)
-  : System(backend)
+  : Order(order)
+  , System(backend)
 {
   const TriangleMesh& mesh = *problem.Mesh;
   const std::vector<char> isUnknown = UnknownVertices(problem, Hold::AllHandles);
@@ -29,7 +33,9 @@ PolyharmonicSystem::PolyharmonicSystem(
   // the unknowns' rows are those of the whole mesh.
   const SparseMatrix matrix = PolyharmonicMatrix(this->Laplacian, this->InverseMass, order);
   context.Report(0.3);
-  this->System.Factorize(matrix, this->Held, context.Part(0.3, 1.0));
+  this->System.Factorize(matrix, this->Held, context.Part(0.3, 0.95));
+  this->MeasureError(*problem.Rest);
+  context.Report(1.0);
 }
 
 void PolyharmonicSystem::NumberLocals(
@@ -75,13 +81,95 @@ Points PolyharmonicSystem::Gather(const Points& ofVertices) const
   return locals;
 }
 
-void PolyharmonicSystem::Solve(const Points& rightHandSide, Points& positions) const
+Points PolyharmonicSystem::Differential(const Points& locals) const
 {
-  Points values = this->Gather(positions);
-  this->System.Solve(rightHandSide, values);
+  return this->InverseMass.asDiagonal() * ApplyLaplacian(this->Laplacian, locals);
+}
+
+Points PolyharmonicSystem::Apply(const Points& locals) const
+{
+  Points values = locals;
+  for (int k = 1; k < this->Order; ++k)
+  {
+    values = this->Differential(values);
+  }
+  return ApplyLaplacian(this->Laplacian, values);
+}
+
+/// One step of iterative refinement: x += K^-1 (b + s (t - x) - K x).
+void PolyharmonicSystem::Refine(
+  const Points& rightHandSide, const Points& targets, Points& values) const
+{
+  const Points residual =
+    rightHandSide + this->Held.Stiffness.asDiagonal() * (targets - values) - this->Apply(values);
+  Points correction = Points::Zero(values.rows(), 3);
+  this->System.Solve(residual, correction);
+  values += correction;
+}
+
+void PolyharmonicSystem::Solve(const Points& rightHandSide, Points& values) const
+{
+  const Points targets = this->Gather(values);
+  Points locals = targets;
+  this->System.Solve(rightHandSide, locals);
+  for (int i = 0; i < this->Refinements; ++i)
+  {
+    this->Refine(rightHandSide, targets, locals);
+  }
   for (int i = 0; i < this->NumberOfUnknowns(); ++i)
   {
-    positions.row(this->Vertices[i]) = values.row(i);
+    values.row(this->Vertices[i]) = locals.row(i);
+  }
+}
+
+/// Solves for the rest positions, which are the solution to K times themselves,
+/// and counts the refinements after which no more is won.
+void PolyharmonicSystem::MeasureError(const Points& rest)
+{
+  Points known = this->Gather(rest);
+  if (this->NumberOfUnknowns() == 0)
+  {
+    return;
+  }
+  known.rowwise() -= known.colwise().mean().eval();
+  const double size = known.rowwise().norm().maxCoeff();
+  const Points rightHandSide = this->Apply(known);
+  Points values = known;
+  this->System.Solve(rightHandSide, values);
+  const auto errors = [&]() -> Eigen::VectorXd
+  { return (values - known).rowwise().norm() / (size > 0.0 ? size : 1.0); };
+  this->MeasuredError = errors().maxCoeff();
+  // A step that wins less than a digit is of no use.
+  constexpr double Gain = 0.1;
+  for (double before = 1.0 / Gain;
+       this->MeasuredError > RefinedError && this->MeasuredError < Gain * before;)
+  {
+    before = this->MeasuredError;
+    this->Refine(rightHandSide, known, values);
+    this->MeasuredError = errors().maxCoeff();
+    ++this->Refinements;
+  }
+  this->Warn(errors());
+}
+
+void PolyharmonicSystem::Warn(const Eigen::VectorXd& errors)
+{
+  IdSample lost;
+  for (int i = 0; i < this->NumberOfUnknowns(); ++i)
+  {
+    if (errors[i] > WarnedError)
+    {
+      lost.Add(this->Vertices[i]);
+    }
+  }
+  if (!lost.IsEmpty())
+  {
+    std::ostringstream warning;
+    warning << std::setprecision(2) << "Rounding in the system of order " << this->Order
+            << " moves " << lost.Describe("point", "points") << " by up to " << errors.maxCoeff()
+            << " of the size of the surface between the handles. Use a method of order 1, such as "
+               "Rotation Invariant Deformation, or hold more points.";
+    this->Warning = warning.str();
   }
 }
 

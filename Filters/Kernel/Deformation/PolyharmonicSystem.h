@@ -17,12 +17,22 @@ namespace cartan
 /// the least-squares fit to differential coordinates d, whose right-hand side is
 /// L d. L and M are those of LaplaceOperator.
 ///
+/// K's entries grow like the k-th power of L's, and rounding of K with them. So the
+/// factor is tried on a solution that is known, the rest positions, when it is
+/// made: what the solve misses there is the measure of its rounding, which decides
+/// how often each solve is refined with residuals of L applied k times.
+///
 /// Its *local* numbering has the unknown vertices first, then the held vertices
 /// one edge away from them, then those two edges away, up to k, which are all
 /// that the system sees. Other vertices are not in it and cost nothing.
 class PolyharmonicSystem
 {
 public:
+  /// What a solve may miss of the known solution, in parts of its size, without
+  /// being refined, and without a warning.
+  static constexpr double RefinedError = 1e-7;
+  static constexpr double WarnedError = 1e-6;
+
   /// `order` is 1, 2 or 3. Symmetric weights from HandleProblem::Weights.
   PolyharmonicSystem(const HandleProblem& problem, int order, SolverBackend backend,
     const ExecutionContext& context);
@@ -47,10 +57,24 @@ public:
   /// The rows of the locals: #locals x 3 from #V x 3.
   Points Gather(const Points& ofVertices) const;
 
-  /// Solves K x = b: `rightHandSide` is b (#locals x 3, read at unknowns); `positions`
-  /// (#V x 3) has the places of held vertices and the targets of softly held
-  /// ones, and gets the unknowns'.
-  void Solve(const Points& rightHandSide, Points& positions) const;
+  /// Solves K x = b: `rightHandSide` is b (#locals x 3, read at unknowns); `values`
+  /// (#V x 3) has those of held vertices and the targets of softly held ones, and
+  /// gets the unknowns'. Zeros give zeros exactly, so that displacements from the
+  /// rest are better unknowns than positions.
+  void Solve(const Points& rightHandSide, Points& values) const;
+
+  /// L (M^-1 L)^(k-1) x of the locals, right at the unknowns.
+  Points Apply(const Points& locals) const;
+
+  /// M^-1 L x of the locals, right at those nearer than k edges.
+  Points Differential(const Points& locals) const;
+
+  /// What the refined solve misses of the known solution, in parts of its size.
+  double GetMeasuredError() const { return this->MeasuredError; }
+  int GetNumberOfRefinements() const { return this->Refinements; }
+
+  /// Names the vertices where rounding is above WarnedError; empty if none is.
+  const std::string& GetWarning() const { return this->Warning; }
 
   int GetNumberOfFactorizations() const { return this->System.GetNumberOfFactorizations(); }
 
@@ -63,7 +87,14 @@ public:
 
 private:
   void NumberLocals(const TriangleMesh& mesh, const std::vector<char>& isUnknown, int order);
+  void Refine(const Points& rightHandSide, const Points& targets, Points& values) const;
+  void MeasureError(const Points& rest);
+  void Warn(const Eigen::VectorXd& errors);
 
+  int Order;
+  int Refinements = 0;
+  double MeasuredError = 0.0;
+  std::string Warning;
   std::vector<int> Vertices;
   std::vector<int> RingEnds;
   SparseMatrix Laplacian;
