@@ -55,6 +55,7 @@ HandleMotion ToKernel(vtkHandleMotion* motion, const Eigen::Vector3d& origin)
     result.Translation[row] = transform->GetElement(row, 3);
   }
   motion->GetRotationVector(result.RotationVector.data());
+  result.CountsTurns = motion->GetMode() == vtkHandleMotion::AXIS_ANGLE;
   return result;
 }
 
@@ -188,6 +189,10 @@ HandleTargets MakeTargets(const HandleProblem& problem, const Eigen::Vector3d& o
     isPerVertex = isPerVertex || motion == motions.end();
     targets.Motions.push_back(
       motion == motions.end() ? HandleMotion() : ToKernel(motion->second, origin));
+    if (motion == motions.end())
+    {
+      targets.Motions.back().CountsTurns = arrays.Transforms.rows() == 0;
+    }
   }
   if (!isPerVertex)
   {

@@ -153,6 +153,11 @@ TEST_F(AsRigidAsPossibleDeformation, ConvergesToItsTolerance)
 
 TEST_F(AsRigidAsPossibleDeformation, RefusesLapsAboutDifferentAxes)
 {
+  // Between two moving handles there is one axis; a pinned point amid the first
+  // makes two.
+  const vtkSmartPointer<vtkPolyData> bar = MarkedBar();
+  bar->GetPointData()->GetArray("Handle")->SetTuple1(bar->FindPoint(0.0, 0.0, 0.0), 3.0);
+  this->Filter->SetInputData(bar);
   vtkNew<vtkHandleMotion> other;
   other->SetAxis(0.0, 0.0, 1.0);
   other->SetAngle(400.0);

@@ -60,7 +60,7 @@ AsRigidAsPossibleDeformer::~AsRigidAsPossibleDeformer() = default;
 
 std::size_t AsRigidAsPossibleDeformer::GetBytes() const
 {
-  return this->Problem.GetBytes() + this->Guess->GetBytes() +
+  return this->GetBaseBytes() + this->Guess->GetBytes() +
     TotalBytes(this->Vertices, this->Unknowns, this->Cells, this->HoldsRotation, this->SpokeOffsets,
       this->Spokes, this->Rims, this->Colors, this->MovingHandles, this->Rest, this->Current,
       this->Rotations, this->CellEnergies, this->Residual, this->Energies);
@@ -437,7 +437,7 @@ void AsRigidAsPossibleDeformer::Start(
   }
 }
 
-void AsRigidAsPossibleDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
+void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
   this->Start(targets, result, context.Part(0.0, 0.1));

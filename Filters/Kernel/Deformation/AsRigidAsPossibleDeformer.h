@@ -88,11 +88,6 @@ public:
     this->Tolerance = tolerance;
   }
 
-  /// Throws what the initial guess throws: ShapePreservingDeformer refuses
-  /// rotations of 360 degrees or more about different axes.
-  void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
-    const ExecutionContext& context) override;
-
   /// Of the last motion: E of the initial guess and after each step, in squared
   /// length units for weights without unit; the last is that of the result.
   const std::vector<double>& GetEnergies() const { return this->Energies; }
@@ -111,6 +106,12 @@ public:
   int GetNumberOfFreeVertices() const override { return this->System->NumberOfUnknowns(); }
   std::string GetWarning() const override { return this->Warning; }
   std::size_t GetBytes() const override;
+
+protected:
+  /// Throws what the initial guess throws: ShapePreservingDeformer refuses
+  /// rotations of 360 degrees or more about different axes.
+  void DeformRelative(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context) override;
 
 private:
   /// An edge of a cell from its center.

@@ -54,14 +54,14 @@ int FrameDeformer::GetNumberOfFactorizations() const
 
 std::size_t FrameDeformer::GetBytes() const
 {
-  return this->Problem.GetBytes() + this->Frames->GetBytes() +
+  return this->GetBaseBytes() + this->Frames->GetBytes() +
     (this->Positions == this->Frames ? 0 : this->Positions->GetBytes()) +
     (this->Model ? this->Model->GetBytes() : 0) +
     TotalBytes(*this->EdgeWeights, this->HandleVertices, this->Transforms, this->TriangleTransforms,
       this->TriangleWeights);
 }
 
-void FrameDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
+void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
   this->Warning.clear();

@@ -43,9 +43,6 @@ public:
   void SetVolumeModel(std::shared_ptr<const VolumeModel> model) { this->Model = std::move(model); }
   const std::shared_ptr<const VolumeModel>& GetVolumeModel() const { return this->Model; }
 
-  void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
-    const ExecutionContext& context) override;
-
   int GetNumberOfFactorizations() const override;
   int GetNumberOfFreeVertices() const override { return this->Frames->NumberOfUnknowns(); }
   std::string GetWarning() const override { return this->Warning; }
@@ -58,6 +55,12 @@ public:
   std::shared_ptr<const Eigen::VectorXd> GetPositionWeights() const { return this->EdgeWeights; }
 
 protected:
+  void DeformRelative(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context) override;
+
+  /// Volume is preserved by moving regions that no handle deforms, too.
+  bool FollowsRigidHandles() const override { return !this->PreservesVolume(); }
+
   struct HandleVertex
   {
     int Vertex;

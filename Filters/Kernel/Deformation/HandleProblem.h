@@ -50,6 +50,10 @@ struct HandleMotion
   /// Axis times angle in radians of the rotation in Linear, of any length: more
   /// than 2 pi means laps. Used by methods that see rotations as angles.
   Eigen::Vector3d RotationVector = Eigen::Vector3d::Zero();
+  /// Whether RotationVector, or HandleTargets::RotationVectors at this handle, is
+  /// as the user gave it. Off: it was found from a matrix, and other vectors of
+  /// the same rotation, whole turns apart, mean the same (see CommonMotion).
+  bool CountsTurns = true;
 };
 
 /// What changes from one motion to the next.

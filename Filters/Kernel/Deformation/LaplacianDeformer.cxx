@@ -233,7 +233,7 @@ void LaplacianDeformer::SolveRotated(Points& displacements) const
   this->System.Solve(this->System.GetLaplacian() * turned, displacements);
 }
 
-void LaplacianDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
+void LaplacianDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
   const int numberOfVertices = this->Problem.Mesh->NumberOfVertices();

@@ -39,9 +39,6 @@ public:
   /// The rounds of estimation, >= 1; 5 is past any visible change.
   void SetRounds(int rounds) { this->Rounds = rounds; }
 
-  void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
-    const ExecutionContext& context) override;
-
   std::string GetWarning() const override { return this->System.GetWarning(); }
 
   int GetNumberOfFactorizations() const override
@@ -52,10 +49,14 @@ public:
   int GetNumberOfFreeVertices() const override { return this->System.NumberOfUnknowns(); }
   std::size_t GetBytes() const override
   {
-    return this->Problem.GetBytes() + this->System.GetBytes() + this->ImplicitSystem.GetBytes() +
+    return this->GetBaseBytes() + this->System.GetBytes() + this->ImplicitSystem.GetBytes() +
       TotalBytes(this->MovingHandles, this->Differential, this->Rings, this->TwoRings,
         this->Transforms, this->Fits);
   }
+
+protected:
+  void DeformRelative(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context) override;
 
 private:
   /// The vertices whose differential coordinates the unknowns change: these and

@@ -184,7 +184,7 @@ void MultiresolutionDeformer::FitFrames(
   }
 }
 
-void MultiresolutionDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
+void MultiresolutionDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
   const Points& rest = *this->Problem.Rest;

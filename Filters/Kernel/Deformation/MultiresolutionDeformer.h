@@ -30,9 +30,6 @@ public:
   MultiresolutionDeformer(HandleProblem problem, int order,
     SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
 
-  void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
-    const ExecutionContext& context) override;
-
   std::string GetWarning() const override { return this->Warning; }
 
   /// The vertices whose frames are spread from around.
@@ -45,9 +42,13 @@ public:
   int GetNumberOfFreeVertices() const override { return this->System.NumberOfUnknowns(); }
   std::size_t GetBytes() const override
   {
-    return this->Problem.GetBytes() + this->System.GetBytes() + this->Spreading.GetBytes() +
+    return this->GetBaseBytes() + this->System.GetBytes() + this->Spreading.GetBytes() +
       TotalBytes(this->MovingHandles, this->Zero, this->RestBase, this->Changes);
   }
+
+protected:
+  void DeformRelative(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context) override;
 
 private:
   void PrepareSpreading(const ExecutionContext& context);

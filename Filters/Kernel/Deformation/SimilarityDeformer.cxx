@@ -37,7 +37,7 @@ void SimilarityDeformer::EdgeForm::DeformBy(Matrices& transforms, const HandleTa
     Loan& operator=(const Loan&) = delete;
   };
   const Loan loan(transforms, this->Transforms);
-  this->Deform(targets, false, result, context);
+  this->DeformRelative(targets, false, result, context);
 }
 
 SimilarityDeformer::SimilarityDeformer(HandleProblem problem, const Options& options,
@@ -54,7 +54,7 @@ SimilarityDeformer::SimilarityDeformer(HandleProblem problem, const Options& opt
 
 std::size_t SimilarityDeformer::GetBytes() const
 {
-  return this->Problem.GetBytes() + this->System.GetBytes() + this->PositionSystem.GetBytes() +
+  return this->GetBaseBytes() + this->System.GetBytes() + this->PositionSystem.GetBytes() +
     (this->Edges ? this->Edges->GetBytes() : 0) +
     TotalBytes(this->PositionColumns, this->Transforms, this->Scales);
 }
@@ -292,7 +292,7 @@ void SimilarityDeformer::WarnOfSingularTransforms(const HandleTargets& targets)
   }
 }
 
-void SimilarityDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
+void SimilarityDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
   this->Prepare(context.Part(0.0, 0.1));

@@ -95,9 +95,6 @@ public:
   /// together from edges again; not with Affine. Default: 0.
   void SetRefits(int refits) { this->Refits = refits; }
 
-  void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
-    const ExecutionContext& context) override;
-
   /// s_i of the last motion, 1 where nothing moves, whether it was used or not: #V.
   const Eigen::VectorXd& GetScaleFactors() const { return this->Scales; }
 
@@ -119,6 +116,10 @@ public:
 
   /// The vertices that are in one plane with their neighbors.
   int GetNumberOfFlatVertices() const { return this->System.GetGradients().NumberOfNormals(); }
+
+protected:
+  void DeformRelative(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context) override;
 
 private:
   /// Puts the surface together from transforms that are given.

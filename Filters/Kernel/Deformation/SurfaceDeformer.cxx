@@ -5,6 +5,22 @@
 
 namespace cartan
 {
+void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
+  DeformedSurface& result, const ExecutionContext& context)
+{
+  if (!this->Common)
+  {
+    this->Common = std::make_unique<CommonMotion>(this->Problem);
+  }
+  const HandleTargets relative = this->Common->Remove(targets);
+  this->DeformRelative(relative, wantTransforms, result, context);
+  if (this->FollowsRigidHandles())
+  {
+    this->Common->Follow(relative, wantTransforms, result);
+  }
+  this->Common->Restore(wantTransforms, result);
+}
+
 bool SurfaceDeformer::Serves(const HandleProblem& problem) const
 {
   const HandleProblem& own = this->Problem;
@@ -14,9 +30,11 @@ bool SurfaceDeformer::Serves(const HandleProblem& problem) const
     own.SoftWeights.size() == problem.SoftWeights.size() &&
     own.SoftWeights == problem.SoftWeights &&
     // A handle that may move need not; but without held positions it would be
-    // solved for where it is pinned otherwise.
-    (own.ConstrainPositions ? std::includes(own.Moving.begin(), own.Moving.end(),
-                                problem.Moving.begin(), problem.Moving.end())
-                            : own.Moving == problem.Moving);
+    // solved for where it is pinned otherwise, and the first pinned one decides
+    // from where the others are seen.
+    (own.Moving == problem.Moving ||
+      (own.ConstrainPositions && HasPinnedHandle(own) &&
+        std::includes(
+          own.Moving.begin(), own.Moving.end(), problem.Moving.begin(), problem.Moving.end())));
 }
 }

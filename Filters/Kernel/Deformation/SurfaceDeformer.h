@@ -2,9 +2,11 @@
 #pragma once
 
 #include "Base/ExecutionContext.h"
+#include "Deformation/CommonMotion.h"
 #include "Deformation/HandleProblem.h"
 
 #include <cstddef>
+#include <memory>
 #include <string>
 
 namespace cartan
@@ -16,9 +18,12 @@ class SurfaceDeformer
 public:
   virtual ~SurfaceDeformer() = default;
 
-  /// Writes the deformed surface into `result`, whose memory is reused.
-  virtual void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
-    const ExecutionContext& context) = 0;
+  /// Writes the deformed surface into `result`, whose memory is reused. The
+  /// method sees the targets without what all handles do together (see
+  /// CommonMotion): rigid motions of all handles are exact, and the same edit
+  /// seen from another frame gives the same surface seen from there.
+  void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
+    const ExecutionContext& context);
 
   /// What the deformer was made for. HandleTargets::Motions has one per Moving
   /// handle of this one.
@@ -27,7 +32,8 @@ public:
   /// Whether a deformer made for `problem` would find the same surfaces, up to
   /// rounding, when handles that are moving here only are given no motion. By
   /// default everything must be the same, but for Moving, which may be fewer
-  /// while ConstrainPositions is on. Mesh and Rest are compared as objects.
+  /// while ConstrainPositions is on and a handle is pinned here. Mesh and Rest
+  /// are compared as objects.
   virtual bool Serves(const HandleProblem& problem) const;
 
   virtual int GetNumberOfFactorizations() const = 0;
@@ -48,6 +54,21 @@ protected:
   {
   }
 
+  /// The method itself, as Deform() has it; the targets are relative to the
+  /// common motion, and their rotation vectors as CommonMotion chooses them.
+  virtual void DeformRelative(const HandleTargets& targets, bool wantTransforms,
+    DeformedSurface& result, const ExecutionContext& context) = 0;
+
+  /// Whether regions whose handles all make one rigid motion make just that
+  /// motion; not where something else moves them too.
+  virtual bool FollowsRigidHandles() const { return true; }
+
+  /// The memory of what is kept here.
+  std::size_t GetBaseBytes() const
+  {
+    return this->Problem.GetBytes() + (this->Common ? this->Common->GetBytes() : 0);
+  }
+
   /// Serves() of methods in which a handle at rest is not a pinned one.
   bool ServesSameMoving(const HandleProblem& problem) const
   {
@@ -55,5 +76,8 @@ protected:
   }
 
   HandleProblem Problem;
+
+private:
+  std::unique_ptr<CommonMotion> Common; ///< from the first motion on
 };
 }
