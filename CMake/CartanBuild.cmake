@@ -65,16 +65,16 @@ endfunction ()
 function (cartan_install_package)
   include(CMakePackageConfigHelpers)
   configure_package_config_file(
-    "${CMAKE_CURRENT_SOURCE_DIR}/CMake/vtkCartan-config.cmake.in"
-    "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartan-config.cmake"
+    "${CMAKE_CURRENT_SOURCE_DIR}/CMake/vtkCartanConfig.cmake.in"
+    "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartanConfig.cmake"
     INSTALL_DESTINATION "${CARTAN_CMAKE_DESTINATION}")
   write_basic_package_version_file(
-    "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartan-config-version.cmake"
+    "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartanConfigVersion.cmake"
     COMPATIBILITY SameMinorVersion)
   install(
     FILES
-      "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartan-config.cmake"
-      "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartan-config-version.cmake"
+      "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartanConfig.cmake"
+      "${CMAKE_CURRENT_BINARY_DIR}/CMake/vtkCartanConfigVersion.cmake"
     DESTINATION "${CARTAN_CMAKE_DESTINATION}"
     COMPONENT   development)
 endfunction ()

@@ -257,8 +257,8 @@ TEST(DiscreteFormsFilter, WarnsOfTrianglesWithoutAreaAndGoesOn)
   const auto log = vtktest::Observe(filter);
 
   // The added point has no other triangle, so it has no normal.
-  vtktest::ExpectRefused(
-    filter, log, MakePolyData(shape), { "1 point (id 16)", "without a normal", "remove" }, good);
+  vtktest::ExpectRefused(filter, log, MakePolyData(shape),
+    { "1 point (id 16)", "without a normal", "Prepare Surface" }, good);
 
   // A needle beside proper triangles is no obstacle.
   shape.Faces.row(18) << 0, 1, added;
