@@ -19,7 +19,7 @@ MotionBlend::MotionBlend(const std::vector<HandleMotion>& motions)
 
 Field MotionBlend::Coordinates() const
 {
-  const Eigen::Index count = static_cast<Eigen::Index>(this->RotationVectors.size());
+  const auto count = static_cast<Eigen::Index>(this->RotationVectors.size());
   Field coordinates(count, this->HasStretches ? 12 : 3);
   for (Eigen::Index k = 0; k < count; ++k)
   {
