@@ -13,6 +13,9 @@
  * - An input without points and cells gives empty outputs without a warning:
  *   a pipeline that is being set up.
  * - AbortExecute empties the outputs.
+ * - Warnings, with each update that they concern: cells that use a point twice
+ *   (ignored), cells without area, and border edges that coincide, where the
+ *   surface looks closed and is not (vtkPrepareSurface merges their points).
  * - A surface that is distributed over several ranks is refused, unless the
  *   concrete filter supports pieces.
  * - What is expensive is kept from one update to the next, found by the contents
