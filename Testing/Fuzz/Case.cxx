@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Case.h"
+
+#include "Defects.h"
+#include "Settings.h"
+#include "Shapes.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace fuzz
+{
+namespace
+{
+Array IdArray(const Mesh& mesh)
+{
+  Array ids;
+  ids.Name = "PointId";
+  ids.IsInteger = true;
+  ids.Values = Eigen::VectorXd::LinSpaced(mesh.NumberOfPoints(), 0.0,
+    static_cast<double>(std::max<vtkIdType>(0, mesh.NumberOfPoints() - 1)));
+  return ids;
+}
+
+/// One to three balls of points in every component. A few cases have a component
+/// without one.
+Array RandomHandles(const Mesh& mesh, Random& random)
+{
+  Array handles;
+  handles.Name = "Handle";
+  handles.IsInteger = true;
+  handles.Values = Eigen::VectorXd::Zero(mesh.NumberOfPoints());
+  std::map<vtkIdType, std::vector<vtkIdType>> members;
+  const std::vector<vtkIdType> components = Components(mesh);
+  for (std::size_t i = 0; i < components.size(); ++i)
+  {
+    members[components[i]].push_back(static_cast<vtkIdType>(i));
+  }
+  const bool mayLeaveOut = random.Chance(0.1);
+  for (const auto& component : members)
+  {
+    const std::vector<vtkIdType>& ids = component.second;
+    if (ids.size() < 3 || (mayLeaveOut && random.Chance(0.3)))
+    {
+      continue;
+    }
+    std::vector<Eigen::Vector3d> points;
+    for (const vtkIdType id : ids)
+    {
+      points.push_back(mesh.Points[static_cast<std::size_t>(id)]);
+    }
+    const int count = random.Chance(0.1) ? 1 : random.Integer(2, 4);
+    for (int i = 0; i < count; ++i)
+    {
+      const double radius = random.Chance(0.1) ? 0.0 : Size(points) * random.Real(0.05, 0.3);
+      const Eigen::Vector3d center = random.Pick(points);
+      const int id = random.Integer(1, 4);
+      for (std::size_t k = 0; k < ids.size(); ++k)
+      {
+        if ((points[k] - center).norm() <= radius)
+        {
+          handles.Values(ids[k], 0) = id;
+        }
+      }
+    }
+  }
+  return handles;
+}
+
+/// One per point of each handle without a motion, or of any.
+void AddConstraintArrays(Mesh& mesh, Random& random)
+{
+  const double size = Size(mesh.Points);
+  const auto add = [&](const char* name, int columns, Kind type, double power, const auto& value)
+  {
+    Array array;
+    array.Name = name;
+    array.Type = type;
+    array.Power = power;
+    array.Values.resize(mesh.NumberOfPoints(), columns);
+    for (Eigen::Index i = 0; i < array.Values.rows(); ++i)
+    {
+      array.Values.row(i) = value(i);
+    }
+    mesh.Arrays.push_back(array);
+  };
+  const Eigen::Vector3d shift = 0.2 * size * random.Vector();
+  const Eigen::Vector3d turn = 2.0 * random.Vector();
+  if (random.Chance(0.15))
+  {
+    add("TargetPosition", 3, Kind::Point, 1.0,
+      [&](Eigen::Index i) -> Eigen::RowVectorXd
+      { return (mesh.Points[static_cast<std::size_t>(i)] + shift).transpose(); });
+  }
+  if (random.Chance(0.1))
+  {
+    add("RotationVector", 3, Kind::Vector, 0.0,
+      [&](Eigen::Index) -> Eigen::RowVectorXd { return turn.transpose(); });
+  }
+  else if (random.Chance(0.1))
+  {
+    const Eigen::Matrix3d transform =
+      Eigen::Matrix3d::Identity() + 0.3 * Eigen::Matrix3d(turn * random.Vector().transpose());
+    add("Transform", 9, Kind::Transform, 0.0,
+      [&](Eigen::Index) -> Eigen::RowVectorXd
+      {
+        const Eigen::Matrix3d rows = transform.transpose();
+        return Eigen::Map<const Eigen::RowVectorXd>(rows.data(), 9);
+      });
+  }
+  if (random.Chance(0.15))
+  {
+    const double weight = random.Log(1e-2, 1e3);
+    add("ConstraintWeight", 1, Kind::Scalar, 0.0,
+      [&](Eigen::Index) -> Eigen::RowVectorXd
+      {
+        const double w = random.Chance(0.2) ? std::numeric_limits<double>::infinity() : weight;
+        return Eigen::RowVectorXd::Constant(1, w);
+      });
+  }
+}
+
+/// Normals of length one, which need not fit.
+void AddNormals(Mesh& mesh, Random& random)
+{
+  Array normals;
+  normals.Name = "Normals";
+  normals.Type = Kind::Vector;
+  normals.Values.resize(mesh.NumberOfPoints(), 3);
+  for (Eigen::Index i = 0; i < normals.Values.rows(); ++i)
+  {
+    normals.Values.row(i) = random.Direction().transpose();
+  }
+  mesh.Arrays.push_back(normals);
+}
+
+HandleMotion RandomMotion(int id, const Mesh& mesh, Random& random)
+{
+  const double size = Size(mesh.Points);
+  HandleMotion motion;
+  motion.Id = id;
+  motion.Axis = random.Log(1e-3, 1e3) * random.Direction();
+  motion.Angle = random.Chance(0.8) ? random.Real(-120.0, 120.0) : random.Real(-800.0, 800.0);
+  if (random.Chance(0.2))
+  {
+    motion.Angle = random.Pick<double>({ 0.0, 90.0, 180.0, 360.0 });
+  }
+  motion.Center = random.Pick(mesh.Points);
+  if (!motion.Center.allFinite())
+  {
+    motion.Center.setZero();
+  }
+  motion.Translation = (random.Chance(0.3) ? 0.0 : 0.3) * size * random.Vector();
+  const double kind = random.Unit();
+  if (kind < 0.15)
+  {
+    motion.Scale = random.Log(0.3, 3.0);
+  }
+  else if (kind < 0.25)
+  {
+    motion.IsMatrix = true;
+    const Eigen::Matrix3d shear = 0.5 * random.Vector() * random.Vector().transpose();
+    motion.Matrix.topLeftCorner<3, 3>() = random.Rotation() * (Eigen::Matrix3d::Identity() + shear);
+    // The center stays, but for the translation.
+    motion.Matrix.topRightCorner<3, 1>() =
+      motion.Center - motion.Matrix.topLeftCorner<3, 3>() * motion.Center + motion.Translation;
+  }
+  else if (kind < 0.29)
+  {
+    motion.Scale = random.Pick<double>({ 0.0, -1.0, 1e6, 1e-6 });
+  }
+  else if (kind < 0.31)
+  {
+    motion.Translation *= random.Pick<double>({ 1e9, 1e30, 1e200, std::nan("") });
+  }
+  return motion;
+}
+
+std::vector<HandleMotion> RandomMotions(const Mesh& mesh, Random& random)
+{
+  const Array* handles = mesh.Find("Handle");
+  std::set<int> ids;
+  for (Eigen::Index i = 0; i < handles->Values.rows(); ++i)
+  {
+    ids.insert(static_cast<int>(handles->Values(i, 0)));
+  }
+  ids.erase(0);
+  std::vector<HandleMotion> motions;
+  for (const int id : ids)
+  {
+    if (random.Chance(0.65) || (motions.empty() && id == *ids.rbegin()))
+    {
+      motions.push_back(RandomMotion(id, mesh, random));
+    }
+  }
+  if (random.Chance(0.02))
+  {
+    motions.push_back(RandomMotion(9, mesh, random)); // of no point
+  }
+  return motions;
+}
+
+/// A bend, a stretch and a rigid motion, which differ from call to call.
+std::vector<Eigen::Vector3d> Deformed(const std::vector<Eigen::Vector3d>& points, Random& random)
+{
+  const double size = Size(points);
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points)
+  {
+    center = point.allFinite() ? point : center;
+  }
+  const Eigen::Matrix3d frame = random.Rotation();
+  const double bend = random.Real(-3.0, 3.0);
+  const double stretch = random.Chance(0.5) ? 1.0 : random.Log(0.6, 1.7);
+  const Motion motion{ 1.0, random.Rotation(), center + size * random.Vector() };
+  std::vector<Eigen::Vector3d> deformed;
+  for (const Eigen::Vector3d& point : points)
+  {
+    const Eigen::Vector3d x = frame * (point - center) / size;
+    const double angle = bend * x.x();
+    const Eigen::Vector3d turned(stretch * x.x(), std::cos(angle) * x.y() - std::sin(angle) * x.z(),
+      std::sin(angle) * x.y() + std::cos(angle) * x.z());
+    deformed.push_back(motion(size * turned));
+  }
+  return deformed;
+}
+
+/// Most surfaces have a size near 1 and are near to the origin.
+void Place(Mesh& mesh, Random& random)
+{
+  if (random.Chance(0.8))
+  {
+    Move(mesh, { 1.0, random.Rotation(), random.Vector() });
+  }
+  if (random.Chance(0.25))
+  {
+    Move(mesh, { random.Log(1e-9, 1e9), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero() });
+  }
+  if (random.Chance(0.2))
+  {
+    const double distance = Size(mesh.Points) * random.Log(1.0, 1e3);
+    Move(mesh, { 1.0, Eigen::Matrix3d::Identity(), distance * random.Direction() });
+  }
+}
+
+Mesh RandomMesh(Random& random)
+{
+  Mesh mesh = MakeShape(random);
+  if (random.Chance(0.5))
+  {
+    AddDefects(mesh, random);
+  }
+  if (random.Chance(0.25))
+  {
+    MixCells(mesh, random);
+  }
+  Place(mesh, random);
+  mesh.IsFloat = random.Chance(0.4);
+  if (mesh.IsFloat)
+  {
+    RoundToFloat(mesh.Points);
+  }
+  mesh.Arrays.push_back(IdArray(mesh));
+  mesh.Arrays.push_back(RandomHandles(mesh, random));
+  if (random.Chance(0.15))
+  {
+    AddNormals(mesh, random);
+  }
+  return mesh;
+}
+
+int NumberOfOthers(const std::string& filter, Random& random)
+{
+  if (filter == "SurfaceMorph")
+  {
+    return random.Chance(0.8) ? 1 : random.Integer(2, 4);
+  }
+  if (filter == "CurvatureError")
+  {
+    return random.Integer(0, 1);
+  }
+  return filter == "VolumeChange" || filter == "RestoreSurface" ? 1 : 0;
+}
+}
+
+bool Case::IsDeformation() const
+{
+  const std::string end = "Deformation";
+  return this->Filter.size() > end.size() &&
+    this->Filter.compare(this->Filter.size() - end.size(), end.size(), end) == 0;
+}
+
+double Case::Get(const std::string& setting, double otherwise) const
+{
+  for (const Setting& one : this->Settings)
+  {
+    if (one.Name == setting)
+    {
+      return one.Values[0];
+    }
+  }
+  return otherwise;
+}
+
+void Move(Case& changed, const Motion& motion)
+{
+  Move(changed.Surface, motion);
+  for (std::vector<Eigen::Vector3d>& points : changed.Others)
+  {
+    std::transform(points.begin(), points.end(), points.begin(), motion);
+  }
+  for (Setting& setting : changed.Settings)
+  {
+    const Eigen::RowVectorXd values = Eigen::Map<const Eigen::RowVectorXd>(
+      setting.Values.data(), static_cast<Eigen::Index>(setting.Values.size()));
+    const Eigen::RowVectorXd moved = Moved(values, setting.Type, setting.Power, motion);
+    setting.Values.assign(moved.data(), moved.data() + moved.size());
+  }
+  Eigen::Matrix4d map = Eigen::Matrix4d::Identity();
+  map.topLeftCorner<3, 3>() = motion.Scale * motion.Rotation;
+  map.topRightCorner<3, 1>() = motion.Translation;
+  for (HandleMotion& handle : changed.Motions)
+  {
+    handle.Axis = motion.Rotation * handle.Axis;
+    handle.Center = motion(handle.Center);
+    handle.Translation = motion.Scale * (motion.Rotation * handle.Translation);
+    handle.Matrix = map * handle.Matrix * map.inverse();
+    handle.Matrix.row(3) << 0.0, 0.0, 0.0, 1.0;
+  }
+}
+
+Case MakeCase(std::uint64_t seed, const std::string& filter)
+{
+  Random random(seed * 0x632be59bd9b4e019u + 1);
+  Case made;
+  made.Seed = seed;
+  made.Filter = random.Pick(Filters());
+  if (!filter.empty())
+  {
+    made.Filter = filter;
+  }
+  made.Surface = RandomMesh(random);
+  if (made.IsDeformation())
+  {
+    made.Motions = RandomMotions(made.Surface, random);
+    AddConstraintArrays(made.Surface, random);
+  }
+  const int others = NumberOfOthers(made.Filter, random);
+  for (int i = 0; i < others; ++i)
+  {
+    made.Others.push_back(Deformed(made.Surface.Points, random));
+    if (made.Surface.IsFloat)
+    {
+      RoundToFloat(made.Others.back());
+    }
+  }
+  made.Settings = RandomSettings(made.Filter, made.Surface, random);
+  return made;
+}
+}

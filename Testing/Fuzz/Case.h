@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Mesh.h"
+
+#include "vtkAlgorithm.h"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fuzz
+{
+/// One call of a filter's setter.
+struct Setting
+{
+  std::string Name; ///< without Set
+  std::vector<double> Values;
+  std::string Text; ///< of setters that take one, instead of Values
+  Kind Type = Kind::Scalar;
+  double Power = 0.0; ///< of the length unit
+  std::function<void(vtkAlgorithm*, const std::vector<double>&)> Apply;
+};
+
+/// The motion of a handle: about an axis, or any affine map.
+struct HandleMotion
+{
+  int Id = 1;
+  bool IsMatrix = false;
+  Eigen::Vector3d Axis = Eigen::Vector3d::UnitZ();
+  double Angle = 0.0; ///< in degrees
+  double Scale = 1.0;
+  Eigen::Vector3d Center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d Translation = Eigen::Vector3d::Zero();
+  Eigen::Matrix4d Matrix = Eigen::Matrix4d::Identity();
+};
+
+/// A filter with its inputs and settings: all that a result depends on.
+struct Case
+{
+  std::uint64_t Seed = 0;
+  std::string Filter; ///< the class without vtk
+  Mesh Surface;
+  /// The points of further surfaces of the same cells: key frames of a morph, the
+  /// reference of a comparison, the moved points of what is restored.
+  std::vector<std::vector<Eigen::Vector3d>> Others;
+  std::vector<Setting> Settings;
+  std::vector<HandleMotion> Motions;
+
+  bool IsDeformation() const;
+  /// The first value of a setting, or `otherwise` if it is not set.
+  double Get(const std::string& setting, double otherwise) const;
+};
+
+/// Everything moves together: surfaces, lengths and places in settings, motions.
+void Move(Case& changed, const Motion& motion);
+
+/// All filters, by the class without vtk.
+const std::vector<std::string>& Filters();
+
+/// The case of a seed. With `filter` the filter is given and the rest as random.
+Case MakeCase(std::uint64_t seed, const std::string& filter = {});
+}

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Invariants.h"
+
+#include "Laws.h"
+
+#include "vtkSMPTools.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace fuzz
+{
+namespace
+{
+bool Always(const Case&)
+{
+  return true;
+}
+
+/// The forms alone determine what is reconstructed.
+bool HasPlace(const Case& of)
+{
+  return of.Filter != "FrameReconstruction";
+}
+
+double LargestCoordinate(const Case& of)
+{
+  double largest = 0.0;
+  for (const Eigen::Vector3d& point : of.Surface.Points)
+  {
+    largest = point.allFinite() ? std::max(largest, point.cwiseAbs().maxCoeff()) : largest;
+  }
+  return largest;
+}
+
+/// How much a change of the points in their last digits changes a field of the result.
+Difference RoundingOf(const std::string& name, const Case& original, const Outcome& first)
+{
+  Case changed = original;
+  changed.Surface.IsFloat = false;
+  Random random(original.Seed);
+  const double rounding = 1e-15 * LargestCoordinate(original);
+  const auto shake = [&](std::vector<Eigen::Vector3d>& points)
+  {
+    for (Eigen::Vector3d& point : points)
+    {
+      point += rounding * random.Vector();
+    }
+  };
+  shake(changed.Surface.Points);
+  std::for_each(changed.Others.begin(), changed.Others.end(), shake);
+  const Outcome second = Run(changed);
+  Difference worst;
+  for (const Field& field : first.Fields)
+  {
+    const Field* other = second.Find(field.Name, field.Where);
+    if (field.Name == name && other)
+    {
+      Relation relation;
+      if (original.Surface.IsFloat)
+      {
+        relation.PointTolerance = 3e-7 * LargestCoordinate(original);
+      }
+      const Difference one = CompareField(field, *other, relation, Size(original.Surface.Points));
+      worst = one.Size > worst.Size ? one : worst;
+    }
+  }
+  return worst;
+}
+
+/// Where the last digits of the input decide: numbers that measure, and decisions
+/// about points in the same place.
+bool IsOfDigits(const Case& of)
+{
+  static const std::set<std::string> filters = { "PrepareSurface", "RestoreSurface", "VolumeChange",
+    "CurvatureError", "DiscreteForms", "FrameReconstruction" };
+  return filters.count(of.Filter) > 0;
+}
+
+/// Compares the results of a case and of a changed one. Where rounding of the input
+/// alone would do as much, the digits of the input do not determine the result: of a
+/// measure this is no finding, of others it is one of stability.
+std::optional<Finding> CheckChanged(const std::string& name, const Case& original,
+  const Outcome& first, const Case& changed, Relation relation)
+{
+  if (!first.IsQuiet())
+  {
+    return {};
+  }
+  const Outcome second = Run(changed);
+  Finding finding{ name, DescribeUnsound(changed, second), original, changed, relation.Map };
+  if (!finding.Text.empty())
+  {
+    return finding;
+  }
+  if (!second.IsQuiet())
+  {
+    return {};
+  }
+  // What single precision cannot hold is no difference.
+  relation.PointTolerance =
+    3e-7 * relation.Map.Scale * (original.Surface.IsFloat ? LargestCoordinate(original) : 0.0);
+  if (changed.Surface.IsFloat)
+  {
+    relation.PointTolerance += 3e-7 * LargestCoordinate(changed);
+  }
+  const Difference difference = Compare(first, second, relation, Size(original.Surface.Points));
+  if (difference.IsNone())
+  {
+    return {};
+  }
+  finding.Text = difference.Describe();
+  const Difference rounding = RoundingOf(difference.Field, original, first);
+  const double larger =
+    LargestCoordinate(changed) / std::max(1e-300, LargestCoordinate(original) * relation.Map.Scale);
+  if (rounding.Size * std::max(1.0, larger) > 0.1 * difference.Size)
+  {
+    if (IsOfDigits(original))
+    {
+      return {};
+    }
+    finding.Invariant = "stability";
+    finding.Text += "; rounding alone, " + rounding.Describe();
+  }
+  return finding;
+}
+
+std::optional<Finding> CheckMoved(
+  const std::string& name, const Case& original, const Outcome& first, const Motion& motion)
+{
+  Case changed = original;
+  changed.Surface.IsFloat = false;
+  Move(changed, motion);
+  Relation relation;
+  relation.Map = motion;
+  return CheckChanged(name, original, first, changed, relation);
+}
+
+std::optional<Finding> CheckRigid(const Case& original, const Outcome& first, Random& random)
+{
+  const double size = Size(original.Surface.Points);
+  Motion motion;
+  motion.Rotation = random.Rotation();
+  const Eigen::Vector3d center =
+    original.Surface.Points[0].allFinite() ? original.Surface.Points[0] : Eigen::Vector3d::Zero();
+  motion.Translation = center - motion.Rotation * center + size * random.Vector();
+  return CheckMoved("rigid", original, first, motion);
+}
+
+std::optional<Finding> CheckUnits(const Case& original, const Outcome& first, Random& random)
+{
+  Motion motion;
+  motion.Scale = random.Chance(0.5) ? 1e3 : 1e-3;
+  return CheckMoved("units", original, first, motion);
+}
+
+std::optional<Finding> CheckOffset(const Case& original, const Outcome& first, Random& random)
+{
+  Motion motion;
+  motion.Translation = 1e3 * Size(original.Surface.Points) * random.Direction();
+  return CheckMoved("offset", original, first, motion);
+}
+
+std::optional<Finding> CheckPrecision(const Case& original, const Outcome&, Random&)
+{
+  Case rounded = original;
+  rounded.Surface.IsFloat = false;
+  RoundToFloat(rounded.Surface.Points);
+  std::for_each(rounded.Others.begin(), rounded.Others.end(), RoundToFloat);
+  Case single = rounded;
+  single.Surface.IsFloat = true;
+  return CheckChanged("precision", rounded, Run(rounded), single, {});
+}
+
+std::optional<Finding> CheckThreads(const Case& original, const Outcome&, Random&)
+{
+  vtkSMPTools::SetBackend("STDThread");
+  vtkSMPTools::Initialize(1);
+  const Outcome one = Run(original);
+  vtkSMPTools::Initialize(2);
+  const Outcome two = Run(original);
+  vtkSMPTools::SetBackend("Sequential");
+  const std::string difference = DescribeDifference(one.Surface, two.Surface);
+  if (difference.empty() && one.Errors == two.Errors && one.Warnings == two.Warnings)
+  {
+    return {};
+  }
+  const std::string text = difference.empty() ? "messages" : difference;
+  return Finding{ "threads", text + ": differ with two threads", {}, original, {} };
+}
+
+std::optional<Finding> CheckOrder(const Case& original, const Outcome& first, Random& random)
+{
+  Relation relation;
+  relation.Order.resize(original.Surface.Points.size());
+  std::iota(relation.Order.begin(), relation.Order.end(), 0);
+  random.Shuffle(relation.Order);
+  Case changed = original;
+  Random ofCells(random.Bits());
+  Permute(changed.Surface, relation.Order, ofCells);
+  for (std::vector<Eigen::Vector3d>& points : changed.Others)
+  {
+    const std::vector<Eigen::Vector3d> before = points;
+    for (std::size_t i = 0; i < before.size(); ++i)
+    {
+      points[static_cast<std::size_t>(relation.Order[i])] = before[i];
+    }
+  }
+  return CheckChanged("order", original, first, changed, relation);
+}
+
+/// Results that number points and cells anew do not survive another order, nor do
+/// rotations that are fitted one after the other.
+bool KeepsOrder(const Case& of)
+{
+  const bool isSmoothed =
+    of.Filter == "AsRigidAsPossibleDeformation" && of.Get("Energy", 0.0) >= 2.0;
+  return HasPlace(of) && of.Filter != "PrepareSurface" && !isSmoothed;
+}
+
+std::optional<Finding> CheckHistory(const Case& original, const Outcome& first, Random& random)
+{
+  const Case before = MakeCase(random.Bits() % 1000000, original.Filter);
+  const Outcome second = Run(original, &before);
+  std::string difference = DescribeDifference(first.Surface, second.Surface);
+  if (difference.empty() && (first.Errors != second.Errors || first.Warnings != second.Warnings))
+  {
+    difference = "messages";
+  }
+  if (difference.empty())
+  {
+    return {};
+  }
+  return Finding{ "history", difference + ": differ after another input", before, original, {} };
+}
+
+/// A first guess may come from the surface before.
+bool HasNoMemory(const Case& of)
+{
+  return of.Filter != "AsRigidAsPossibleDeformation" || of.Get("InitialGuess", 3.0) != 1.0;
+}
+}
+
+const std::vector<Invariant>& Invariants()
+{
+  static const std::vector<Invariant> all = []
+  {
+    std::vector<Invariant> invariants = {
+      { "rigid", HasPlace, CheckRigid },
+      { "units", HasPlace, CheckUnits },
+      { "offset", HasPlace, CheckOffset },
+      { "precision", Always, CheckPrecision },
+      { "threads", Always, CheckThreads },
+      { "order", KeepsOrder, CheckOrder },
+      { "history", HasNoMemory, CheckHistory },
+    };
+    for (const Invariant& law : Laws())
+    {
+      invariants.push_back(law);
+    }
+    return invariants;
+  }();
+  return all;
+}
+}

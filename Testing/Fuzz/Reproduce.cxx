@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Reproduce.h"
+
+#include "vtkNew.h"
+#include "vtkXMLPolyDataWriter.h"
+
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+namespace fuzz
+{
+namespace
+{
+void WriteSurface(const Mesh& mesh, const std::string& name)
+{
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetFileName(name.c_str());
+  writer->SetInputData(ToPolyData(mesh));
+  writer->SetDataModeToBinary();
+  writer->Write();
+}
+
+template <typename Values>
+std::string List(const Values& values, Eigen::Index count)
+{
+  std::ostringstream text;
+  text << std::setprecision(17);
+  for (Eigen::Index i = 0; i < count; ++i)
+  {
+    const double value = values[static_cast<std::size_t>(i)];
+    text << (i > 0 ? ", " : "");
+    if (std::isfinite(value))
+    {
+      text << value;
+    }
+    else
+    {
+      text << "float('" << value << "')";
+    }
+  }
+  return text.str();
+}
+
+std::string List(const Eigen::Vector3d& vector)
+{
+  return List(std::vector<double>(vector.data(), vector.data() + 3), 3);
+}
+
+void PrintSettings(std::ostream& out, const Case& of)
+{
+  for (const Setting& setting : of.Settings)
+  {
+    const std::string values =
+      List(setting.Values, static_cast<Eigen::Index>(setting.Values.size()));
+    const bool isOfRegion = setting.Name.compare(0, 6, "Region") == 0 && setting.Name.size() > 6 &&
+      setting.Name != "RegionSource";
+    if (isOfRegion)
+    {
+      out << "    filter.SetRegion(filter.GetRegion() or vtkSphere())\n"
+          << "    filter.GetRegion().Set" << setting.Name.substr(6) << "(" << values << ")\n";
+    }
+    else
+    {
+      const bool isInteger = setting.Power == 0.0 && setting.Values.size() == 1 &&
+        setting.Values[0] == std::floor(setting.Values[0]);
+      out << "    filter.Set" << setting.Name << "(" << (isInteger ? "int(" : "") << values
+          << (isInteger ? ")" : "") << ")\n";
+    }
+  }
+}
+
+void PrintMotions(std::ostream& out, const Case& of)
+{
+  for (const HandleMotion& motion : of.Motions)
+  {
+    out << "    motion = vtkHandleMotion()\n";
+    if (motion.IsMatrix)
+    {
+      const Eigen::Matrix4d rows = motion.Matrix.transpose();
+      out << "    motion.SetMatrixElements(["
+          << List(std::vector<double>(rows.data(), rows.data() + 16), 16) << "])\n"
+          << "    motion.SetModeToMatrix()\n";
+    }
+    else
+    {
+      const Eigen::Vector3d scale = Eigen::Vector3d::Constant(motion.Scale);
+      out << "    motion.SetAxis(" << List(motion.Axis) << ")\n"
+          << "    motion.SetAngle(" << List(std::vector<double>{ motion.Angle }, 1) << ")\n"
+          << "    motion.SetScale(" << List(scale) << ")\n"
+          << "    motion.SetCenter(" << List(motion.Center) << ")\n"
+          << "    motion.SetTranslation(" << List(motion.Translation) << ")\n";
+    }
+    out << "    filter.SetHandleMotion(" << motion.Id << ", motion)\n";
+  }
+  for (const char* name : { "TargetPosition", "RotationVector", "Transform", "ConstraintWeight" })
+  {
+    if (of.IsDeformation() && of.Surface.Find(name))
+    {
+      out << "    filter.Set" << name << "ArrayName('" << name << "')\n";
+    }
+  }
+}
+
+void PrintInputs(std::ostream& out, const Case& of)
+{
+  if (of.Filter == "SurfaceMorph")
+  {
+    out << "    for key in surfaces:\n        filter.AddInputData(key)\n";
+  }
+  else if (of.Filter == "FrameReconstruction")
+  {
+    out << "    forms = vtkDiscreteForms()\n    forms.SetInputData(surfaces[0])\n"
+        << "    filter.SetInputData(0, surfaces[0])\n"
+        << "    filter.SetInputConnection(1, forms.GetOutputPort(1))\n";
+  }
+  else if (of.Filter == "RestoreSurface")
+  {
+    out << "    prepare = vtkPrepareSurface()\n    prepare.SetInputData(surfaces[0])\n"
+        << "    prepare.Update()\n    moved = prepare.GetOutput()\n"
+        << "    ids = moved.GetPointData().GetArray('OriginalPointIds')\n"
+        << "    for i in range(moved.GetNumberOfPoints()):\n"
+        << "        moved.GetPoints().SetPoint(i, surfaces[-1].GetPoint(ids.GetValue(i)))\n"
+        << "    filter.SetInputData(0, moved)\n    filter.SetInputData(1, surfaces[0])\n";
+  }
+  else
+  {
+    out << "    for port, surface in enumerate(surfaces):\n"
+        << "        filter.SetInputData(port, surface)\n";
+  }
+}
+
+/// A Python function `name` that returns the filter of a case, updated.
+void PrintFunction(
+  std::ostream& out, const std::string& name, const Case& of, const std::string& stem)
+{
+  WriteSurface(of.Surface, stem + "_0.vtp");
+  for (std::size_t i = 0; i < of.Others.size(); ++i)
+  {
+    Mesh other = of.Surface;
+    other.Points = of.Others[i];
+    WriteSurface(other, stem + "_" + std::to_string(i + 1) + ".vtp");
+  }
+  out << "\ndef " << name << "():\n    surfaces = [read('" << stem
+      << "_%d.vtp' % i) for i in range(" << of.Others.size() + 1 << ")]\n    filter = vtk"
+      << of.Filter << "()\n";
+  PrintInputs(out, of);
+  PrintSettings(out, of);
+  PrintMotions(out, of);
+  out << "    return updated(filter)\n";
+}
+
+const char* const Head = R"(from vtkmodules.vtkCommonCore import vtkSMPTools
+from vtkmodules.vtkCommonDataModel import vtkSphere
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+from vtkcartan import *
+
+def read(name):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(name)
+    reader.Update()
+    return reader.GetOutput()
+
+def updated(filter):
+    filter.Update()
+    output = filter.GetOutput()
+    print(filter.GetClassName(), output.GetNumberOfPoints(), 'points, bounds', output.GetBounds())
+    return output
+)";
+
+/// Points that the two results share, by PointId.
+void PrintComparison(std::ostream& out, const Motion& map)
+{
+  const Eigen::Matrix3d rows = (map.Scale * map.Rotation).transpose();
+  out << R"(
+def by_id(output):
+    ids = output.GetPointData().GetArray('PointId')
+    return {int(ids.GetValue(i)): output.GetPoint(i) for i in range(output.GetNumberOfPoints())}
+
+linear = [)"
+      << List(std::vector<double>(rows.data(), rows.data() + 9), 9) << "]\ntranslation = ["
+      << List(map.Translation) << R"(]
+before, after = by_id(original()), by_id(changed())
+worst = (0, None)
+for i, p in before.items():
+    moved = [sum(linear[3 * r + c] * p[c] for c in range(3)) + translation[r] for r in range(3)]
+    if i in after:
+        worst = max(worst, (max(abs(a - b) for a, b in zip(moved, after[i])), i))
+print('largest difference of points, at point', worst)
+)";
+}
+}
+
+std::string WriteScript(const Finding& finding, const std::string& folder)
+{
+  const Case& changed = finding.Changed;
+  const std::string stem =
+    folder + "/" + std::to_string(changed.Seed) + "-" + changed.Filter + "-" + finding.Invariant;
+  std::ofstream out(stem + ".py");
+  out << "# Seed " << changed.Seed << ", " << finding.Invariant << ": " << finding.Text << "\n"
+      << Head;
+  PrintFunction(out, "changed", changed, stem + "-changed");
+  if (finding.Original)
+  {
+    PrintFunction(out, "original", *finding.Original, stem + "-original");
+    PrintComparison(out, finding.Map);
+  }
+  else
+  {
+    out << "\nchanged()\n";
+  }
+  return stem + ".py";
+}
+}

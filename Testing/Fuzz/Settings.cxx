@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Settings.h"
+
+#include "vtkAsRigidAsPossibleDeformation.h"
+#include "vtkCurvatureError.h"
+#include "vtkDiscreteForms.h"
+#include "vtkFrameReconstruction.h"
+#include "vtkLaplacianDeformation.h"
+#include "vtkMarkHandle.h"
+#include "vtkMultiresolutionDeformation.h"
+#include "vtkPoissonDeformation.h"
+#include "vtkPrepareSurface.h"
+#include "vtkRestoreSurface.h"
+#include "vtkRotationInvariantDeformation.h"
+#include "vtkShapePreservingDeformation.h"
+#include "vtkSimilarityDeformation.h"
+#include "vtkSphere.h"
+#include "vtkSurfaceMorph.h"
+#include "vtkVolumeChange.h"
+
+#include <map>
+
+namespace fuzz
+{
+namespace
+{
+using Draw = std::function<std::vector<double>(Random&, const Mesh&)>;
+
+/// A setter, and how its values are drawn.
+struct Parameter
+{
+  Setting Call;
+  Draw Values;
+};
+
+template <typename Class, typename Value>
+Parameter Make(const char* name, void (Class::*set)(Value), Draw values, Kind type = Kind::Scalar,
+  double power = 0)
+{
+  Setting call;
+  call.Name = name;
+  call.Type = type;
+  call.Power = power;
+  call.Apply = [set](vtkAlgorithm* filter, const std::vector<double>& v)
+  { (static_cast<Class*>(filter)->*set)(static_cast<Value>(v[0])); };
+  return { call, std::move(values) };
+}
+
+Draw Flag()
+{
+  return [](Random& random, const Mesh&) -> std::vector<double>
+  { return { random.Chance(0.5) ? 1.0 : 0.0 }; };
+}
+
+/// In [low, high], now and then one more or less.
+Draw Integer(int low, int high)
+{
+  return [low, high](Random& random, const Mesh&) -> std::vector<double>
+  {
+    const bool isOutside = random.Chance(0.03);
+    return { static_cast<double>(
+      isOutside ? random.Pick<int>({ low - 1, high + 1, -7 }) : random.Integer(low, high)) };
+  };
+}
+
+Draw Real(double low, double high)
+{
+  return [low, high](Random& random, const Mesh&) -> std::vector<double>
+  {
+    const double margin = random.Chance(0.03) ? 0.2 * (high - low) : 0.0;
+    return { random.Real(low - margin, high + margin) };
+  };
+}
+
+/// A part of the size of the surface.
+Draw Length(double low, double high)
+{
+  return [low, high](Random& random, const Mesh& mesh) -> std::vector<double>
+  { return { Size(mesh.Points) * random.Log(low, high) }; };
+}
+
+using Parameters = std::vector<Parameter>;
+
+Parameters DeformationParameters()
+{
+  using Class = vtkSurfaceDeformation;
+  return {
+    Make("LaplacianWeights", &Class::SetLaplacianWeights, Integer(0, 2)),
+    Make("Solver", &Class::SetSolver, Integer(0, 2)),
+    Make("ConstrainHandlePositions", &Class::SetConstrainHandlePositions, Flag()),
+    Make("ScaleConstraintWeights", &Class::SetScaleConstraintWeights, Flag()),
+    Make("GenerateFrameChange", &Class::SetGenerateFrameChange, Flag()),
+    Make("GenerateRotationVector", &Class::SetGenerateRotationVector, Flag()),
+  };
+}
+
+Parameters FrameParameters()
+{
+  using Class = vtkFrameDeformation;
+  Parameters parameters = DeformationParameters();
+  const Parameters own = {
+    Make("VolumeCorrection", &Class::SetVolumeCorrection, Integer(0, 2)),
+    Make("CloseVolume", &Class::SetCloseVolume, Flag()),
+    Make("PositionWeights", &Class::SetPositionWeights, Integer(0, 3)),
+    Make("GenerateVolumeArrays", &Class::SetGenerateVolumeArrays, Flag()),
+    Make("GenerateShapeDistance", &Class::SetGenerateShapeDistance, Flag()),
+  };
+  parameters.insert(parameters.end(), own.begin(), own.end());
+  return parameters;
+}
+
+Parameters With(Parameters base, const Parameters& own)
+{
+  base.insert(base.end(), own.begin(), own.end());
+  return base;
+}
+
+Parameters RigidParameters()
+{
+  using Class = vtkAsRigidAsPossibleDeformation;
+  return With(DeformationParameters(),
+    { Make("Energy", &Class::SetEnergy, Integer(0, 2)),
+      Make("Bending", &Class::SetBending, Real(0.0, 0.3)),
+      Make("InitialGuess", &Class::SetInitialGuess, Integer(0, 3)),
+      Make("MaximumIterations", &Class::SetMaximumIterations, Integer(0, 12)),
+      Make("Tolerance", &Class::SetTolerance, Real(0.0, 1e-3)),
+      Make("GenerateRigidityEnergy", &Class::SetGenerateRigidityEnergy, Flag()) });
+}
+
+Parameters SimilarityParameters()
+{
+  using Class = vtkSimilarityDeformation;
+  return With(DeformationParameters(),
+    { Make("ScaleFeatures", &Class::SetScaleFeatures, Flag()),
+      Make("CoherenceRings", &Class::SetCoherenceRings, Integer(1, 2)),
+      Make("ConstrainHandleTransforms", &Class::SetConstrainHandleTransforms, Flag()),
+      Make("Reconstruction", &Class::SetReconstruction, Integer(0, 2)),
+      Make("Refits", &Class::SetRefits, Integer(0, 4)),
+      Make("GenerateScaleFactor", &Class::SetGenerateScaleFactor, Flag()) });
+}
+
+Parameters PrepareParameters()
+{
+  using Class = vtkPrepareSurface;
+  return { Make("MergePoints", &Class::SetMergePoints, Flag()),
+    Make("MergeInnerPoints", &Class::SetMergeInnerPoints, Flag()),
+    // Relative: without a unit.
+    Make("Tolerance", &Class::SetTolerance,
+      [](Random& random, const Mesh&) -> std::vector<double>
+      { return { random.Log(1e-9, 1e-1) }; }),
+    Make("AverageMergedArrays", &Class::SetAverageMergedArrays, Flag()),
+    Make("DropDoubledTriangles", &Class::SetDropDoubledTriangles, Flag()),
+    Make("OrientConsistently", &Class::SetOrientConsistently, Flag()),
+    Make("CutNonManifold", &Class::SetCutNonManifold, Flag()),
+    Make("OrientOutwards", &Class::SetOrientOutwards, Flag()),
+    Make("AlternateNested", &Class::SetAlternateNested, Flag()),
+    Make("MinimumComponentArea", &Class::SetMinimumComponentArea, Real(0.0, 0.5)),
+    Make("MaximumHoleEdges", &Class::SetMaximumHoleEdges, Integer(0, 40)),
+    Make("MaximumHoleLength", &Class::SetMaximumHoleLength, Length(1e-2, 10.0), Kind::Scalar, 1),
+    Make("FlipEdges", &Class::SetFlipEdges, Flag()),
+    Make("FlipAngle", &Class::SetFlipAngle, Real(0.0, 180.0)) };
+}
+
+Parameters MorphParameters()
+{
+  using Class = vtkSurfaceMorph;
+  return { Make("Method", &Class::SetMethod, Integer(0, 3)),
+    Make("Parameter", &Class::SetParameter, Real(0.0, 1.0)),
+    Make("Placement", &Class::SetPlacement, Integer(0, 1)),
+    Make("CloseVolume", &Class::SetCloseVolume, Flag()),
+    Make("TransitionInterpolation", &Class::SetTransitionInterpolation, Integer(0, 1)),
+    Make("FrameSolver", &Class::SetFrameSolver, Integer(0, 2)),
+    Make("Stitching", &Class::SetStitching, Integer(0, 2)),
+    Make("LengthPolish", &Class::SetLengthPolish, Integer(0, 3)) };
+}
+
+vtkSphere* RegionOf(vtkAlgorithm* filter)
+{
+  auto* mark = vtkMarkHandle::SafeDownCast(filter);
+  if (!mark->GetRegion())
+  {
+    mark->SetRegion(vtkSmartPointer<vtkSphere>::New());
+  }
+  return vtkSphere::SafeDownCast(mark->GetRegion());
+}
+
+/// Center and radius of a sphere.
+Parameters RegionParameters()
+{
+  Setting center;
+  center.Name = "RegionCenter";
+  center.Type = Kind::Point;
+  center.Apply = [](vtkAlgorithm* filter, const std::vector<double>& v)
+  { RegionOf(filter)->SetCenter(v[0], v[1], v[2]); };
+  const Draw onePoint = [](Random& random, const Mesh& mesh) -> std::vector<double>
+  {
+    const Eigen::Vector3d point = random.Pick(mesh.Points);
+    const bool isFinite = point.allFinite();
+    return { isFinite ? point.x() : 0.0, isFinite ? point.y() : 0.0, isFinite ? point.z() : 0.0 };
+  };
+  Setting radius;
+  radius.Name = "RegionRadius";
+  radius.Power = 1;
+  radius.Apply = [](vtkAlgorithm* filter, const std::vector<double>& v)
+  { RegionOf(filter)->SetRadius(v[0]); };
+  return { { center, onePoint }, { radius, Length(1e-2, 1.0) } };
+}
+
+Parameters MarkParameters()
+{
+  using Class = vtkMarkHandle;
+  return With(RegionParameters(),
+    { Make("HandleId", &Class::SetHandleId, Integer(0, 5)),
+      Make("RegionSource", &Class::SetRegionSource, Integer(0, 3)),
+      Make("InsideOut", &Class::SetInsideOut, Flag()),
+      Make("GrowRings", &Class::SetGrowRings, Integer(0, 4)),
+      Make("GrowDistance", &Class::SetGrowDistance, Length(1e-3, 2.0), Kind::Scalar, 1),
+      Make("Overwrite", &Class::SetOverwrite, Flag()) });
+}
+
+/// Filters, each with what makes it and what can be set.
+struct Entry
+{
+  std::function<vtkSmartPointer<vtkAlgorithm>()> New;
+  Parameters Own;
+};
+
+template <typename Class>
+Entry MakeEntry(Parameters own)
+{
+  return { [] { return vtkSmartPointer<Class>::New(); }, std::move(own) };
+}
+
+const std::map<std::string, Entry>& Entries()
+{
+  using Frames = vtkShapePreservingDeformation;
+  using Forms = vtkFrameReconstruction;
+  static const std::map<std::string, Entry> entries = {
+    { "AsRigidAsPossibleDeformation",
+      MakeEntry<vtkAsRigidAsPossibleDeformation>(RigidParameters()) },
+    { "CurvatureError",
+      MakeEntry<vtkCurvatureError>(
+        { Make("ComputeDirections", &vtkCurvatureError::SetComputeDirections, Flag()) }) },
+    { "DiscreteForms", MakeEntry<vtkDiscreteForms>({}) },
+    { "FrameReconstruction",
+      MakeEntry<Forms>({ Make("SeedPoint", &Forms::SetSeedPoint, Integer(0, 40)),
+        Make("TransitionMethod", &Forms::SetTransitionMethod, Integer(0, 1)),
+        Make("ProjectFrames", &Forms::SetProjectFrames, Flag()) }) },
+    { "LaplacianDeformation",
+      MakeEntry<vtkLaplacianDeformation>(With(DeformationParameters(),
+        { Make("Rotations", &vtkLaplacianDeformation::SetRotations, Integer(0, 2)),
+          Make("Rounds", &vtkLaplacianDeformation::SetRounds, Integer(1, 8)) })) },
+    { "MarkHandle", MakeEntry<vtkMarkHandle>(MarkParameters()) },
+    { "MultiresolutionDeformation",
+      MakeEntry<vtkMultiresolutionDeformation>(With(DeformationParameters(),
+        { Make("Smoothness", &vtkMultiresolutionDeformation::SetSmoothness, Integer(1, 3)) })) },
+    { "PoissonDeformation",
+      MakeEntry<vtkPoissonDeformation>(With(FrameParameters(),
+        { Make("Propagation", &vtkPoissonDeformation::SetPropagation, Integer(0, 1)) })) },
+    { "PrepareSurface", MakeEntry<vtkPrepareSurface>(PrepareParameters()) },
+    { "RestoreSurface", MakeEntry<vtkRestoreSurface>({}) },
+    { "RotationInvariantDeformation",
+      MakeEntry<vtkRotationInvariantDeformation>(With(FrameParameters(),
+        { Make("FrameProjection", &vtkRotationInvariantDeformation::SetFrameProjection,
+          Integer(0, 2)) })) },
+    { "ShapePreservingDeformation",
+      MakeEntry<Frames>(With(FrameParameters(),
+        { Make("MaximumIterations", &Frames::SetMaximumIterations, Integer(1, 20)),
+          Make("Tolerance", &Frames::SetTolerance, Real(0.0, 1e-3)) })) },
+    { "SimilarityDeformation", MakeEntry<vtkSimilarityDeformation>(SimilarityParameters()) },
+    { "SurfaceMorph", MakeEntry<vtkSurfaceMorph>(MorphParameters()) },
+    { "VolumeChange",
+      MakeEntry<vtkVolumeChange>(
+        { Make("ComputeLocalVolume", &vtkVolumeChange::SetComputeLocalVolume, Flag()) }) },
+  };
+  return entries;
+}
+}
+
+const std::vector<std::string>& Filters()
+{
+  static const std::vector<std::string> names = []
+  {
+    std::vector<std::string> all;
+    for (const auto& entry : Entries())
+    {
+      all.push_back(entry.first);
+    }
+    return all;
+  }();
+  return names;
+}
+
+std::vector<Setting> RandomSettings(const std::string& filter, const Mesh& mesh, Random& random)
+{
+  std::vector<Setting> settings;
+  // Some cases are all defaults, in others much is set.
+  const double part = random.Chance(0.2) ? 0.0 : random.Real(0.1, 0.7);
+  for (const Parameter& parameter : Entries().at(filter).Own)
+  {
+    // A region has both, center and radius.
+    const bool isOfRegion =
+      parameter.Call.Name == "RegionCenter" || parameter.Call.Name == "RegionRadius";
+    if (isOfRegion || random.Chance(part))
+    {
+      settings.push_back(parameter.Call);
+      settings.back().Values = parameter.Values(random, mesh);
+    }
+  }
+  return settings;
+}
+
+vtkSmartPointer<vtkAlgorithm> NewFilter(const Case& of)
+{
+  vtkSmartPointer<vtkAlgorithm> filter = Entries().at(of.Filter).New();
+  for (const Setting& setting : of.Settings)
+  {
+    setting.Apply(filter, setting.Values);
+  }
+  return filter;
+}
+}
