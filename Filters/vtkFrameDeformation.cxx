@@ -18,9 +18,9 @@ namespace
 std::unique_ptr<cartan::VolumeModel> NewModel(
   const cartan::HandleProblem& problem, const cartan::ExecutionContext& context)
 {
-  const cartan::RayTree tree(problem.Mesh->GetTriangles(), *problem.Rest);
+  const cartan::RayTree tree(problem.GetWhole()->GetTriangles(), *problem.Rest);
   return std::make_unique<cartan::VolumeModel>(cartan::MeasureVolumeModel(
-    *problem.Mesh, *problem.Rest,
+    *problem.GetWhole(), *problem.Rest,
     [&tree](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
     { return tree.FirstHit(from, direction); },
     context));
@@ -34,7 +34,7 @@ Eigen::VectorXd LocalVolumesOf(const cartan::HandleProblem& problem,
   Eigen::VectorXd measured = volumes.Measure(positions, context);
   for (Eigen::Index v = 0; v < positions.rows(); ++v)
   {
-    const int component = problem.Mesh->Component(static_cast<int>(v));
+    const int component = problem.GetWhole()->Component(static_cast<int>(v));
     if (component >= 0 && !model.EnclosesVolume[component])
     {
       measured[v] = std::numeric_limits<double>::quiet_NaN();
@@ -122,7 +122,7 @@ void vtkFrameDeformation::AddVolumeArrays(const cartan::FrameDeformer& deformer,
         [&]
         {
           return std::make_unique<cartan::LocalVolumes>(
-            problem.Mesh, *problem.Rest, run.Context().Part(0.95, 0.98));
+            problem.GetWhole(), *problem.Rest, run.Context().Part(0.95, 0.98));
         });
       volume = LocalVolumesOf(problem, model, *volumes, result.Positions, run.Context());
     }
@@ -135,7 +135,7 @@ void vtkFrameDeformation::AddVolumeArrays(const cartan::FrameDeformer& deformer,
   if (this->GenerateShapeDistance)
   {
     const cartan::ShapeDistance distance = cartan::ShapeDistanceOfRotations(
-      *problem.Mesh, *problem.Rest, result.Transforms, run.Context().Part(0.98, 1.0));
+      *problem.GetWhole(), *problem.Rest, result.Transforms, run.Context().Part(0.98, 1.0));
     cartan::AddPointArray(output, "ShapeDistanceDensity", distance.Density);
     cartan::AddFieldValue(output, "ShapeDistance", distance.Total);
   }

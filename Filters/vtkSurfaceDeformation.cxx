@@ -8,6 +8,7 @@
 #include "Kernel/Algebra/ConstrainedSolver.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/HandleCurve.h"
+#include "Kernel/Deformation/SliverRemoval.h"
 #include "vtkHandleMotion.h"
 
 #include "vtkBoundingBox.h"
@@ -353,9 +354,10 @@ std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::Filt
     [&]
     {
       auto fresh = std::make_unique<cartan::Preparation>();
-      fresh->Problem = this->MakeProblem(input, surface, handles, moving);
+      fresh->Problem = cartan::WithoutSlivers(
+        this->MakeProblem(input, surface, handles, moving), run.Context().Part(0.1, 0.12));
       fresh->Method = this->NewMethod(fresh->Problem,
-        static_cast<cartan::SolverBackend>(this->Solver), run.Context().Part(0.1, 0.6));
+        static_cast<cartan::SolverBackend>(this->Solver), run.Context().Part(0.12, 0.6));
       this->State->Factorizations += fresh->Method.Deformer->GetNumberOfFactorizations();
       return fresh;
     });

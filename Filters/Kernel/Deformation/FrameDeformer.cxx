@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/FrameDeformer.h"
 
+#include "Deformation/SliverRemoval.h"
 #include "Differential/Curvature.h"
+#include "Measure/ComponentVolumes.h"
 #include "Measure/VolumeClosing.h"
 #include "Mesh/Geometry.h"
 
@@ -237,6 +239,25 @@ void FrameDeformer::ScaleFrames(
   this->SolvePositions(targets, scaled, result, context);
 }
 
+/// The volumes at rest without those of the slivers at these positions.
+std::vector<double> FrameDeformer::VolumesWithoutSlivers(const Points& positions) const
+{
+  std::vector<double> volumes = this->Model->Volumes;
+  if (this->Problem.Whole)
+  {
+    DeformedSurface whole;
+    whole.Positions = positions;
+    CarryRiders(this->Problem.Riders, *this->Problem.Rest, whole);
+    const auto all = MeasureComponents(*this->Problem.Whole, whole.Positions);
+    const auto without = MeasureComponents(*this->Problem.Mesh, positions);
+    for (std::size_t c = 0; c < volumes.size(); ++c)
+    {
+      volumes[c] -= all[c].Volume - without[c].Volume;
+    }
+  }
+  return volumes;
+}
+
 void FrameDeformer::CloseVolumes(Points& positions)
 {
   const HandleLaplacian& system = *this->Positions;
@@ -255,8 +276,15 @@ void FrameDeformer::CloseVolumes(Points& positions)
     }
     return direction;
   };
-  const IdSample notClosed = cartan::CloseVolumes(
-    *this->Problem.Mesh, this->Model->EnclosesVolume, this->Model->Volumes, solve, positions);
+  // Slivers are not in the mesh, but enclose volume: what is to be closed is the
+  // rest of the whole, which changes by little when the rest has moved.
+  const int rounds = this->Problem.Whole ? 3 : 1;
+  IdSample notClosed;
+  for (int round = 0; round < rounds; ++round)
+  {
+    notClosed = cartan::CloseVolumes(*this->Problem.Mesh, this->Model->EnclosesVolume,
+      this->VolumesWithoutSlivers(positions), solve, positions);
+  }
   if (!notClosed.IsEmpty())
   {
     this->Warning += (this->Warning.empty() ? "" : " ");

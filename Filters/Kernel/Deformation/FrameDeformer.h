@@ -104,6 +104,7 @@ private:
   Eigen::Vector3d TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const;
   void ScaleFrames(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
+  std::vector<double> VolumesWithoutSlivers(const Points& positions) const;
   void CloseVolumes(Points& positions);
 
   VolumeCorrection Correction = VolumeCorrection::None;

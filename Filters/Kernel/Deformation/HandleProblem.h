@@ -4,16 +4,30 @@
 #include "Base/Bytes.h"
 #include "Differential/Laplacian.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
 namespace cartan
 {
+/// A vertex that is in no triangle of a deformer's mesh, but goes with one.
+struct Rider
+{
+  int Vertex;
+  std::array<int, 3> Corners; ///< vertices of the mesh, or riders after this one
+  Eigen::Vector3d Weights;    ///< barycentric coordinates of its foot
+  double Height;              ///< over the triangle, in parts of the root of twice its area
+};
+
 /// What stays the same while handles are dragged. A *handle* k >= 1 is the set
 /// of vertices that a user holds as one.
 struct HandleProblem
 {
   std::shared_ptr<const TriangleMesh> Mesh;
+  /// The mesh with its slivers, for what is measured on it; nothing when Mesh is
+  /// that (see WithoutSlivers).
+  std::shared_ptr<const TriangleMesh> Whole;
+  std::vector<Rider> Riders;          ///< vertices of Whole that are in no triangle of Mesh
   std::shared_ptr<const Points> Rest; ///< #V x 3, best centered on the origin
   std::vector<int> Handle;            ///< #V, the handle of each vertex; 0 is free
   /// The handles that may move, in increasing order. The others keep their
@@ -38,8 +52,17 @@ struct HandleProblem
   /// solves, and a sum over 256 takes as long as a solve.
   int StoredHandles = 64;
 
-  /// The memory that it holds, without the mesh and the rest positions.
-  std::size_t GetBytes() const { return TotalBytes(this->Handle, this->Moving, this->SoftWeights); }
+  const std::shared_ptr<const TriangleMesh>& GetWhole() const
+  {
+    return this->Whole ? this->Whole : this->Mesh;
+  }
+
+  /// The memory that it holds, without the whole mesh and the rest positions.
+  std::size_t GetBytes() const
+  {
+    return TotalBytes(this->Handle, this->Moving, this->SoftWeights, this->Riders) +
+      (this->Whole ? this->Mesh->GetBytes() : 0);
+  }
 };
 
 /// x -> Linear x + Translation for one handle.

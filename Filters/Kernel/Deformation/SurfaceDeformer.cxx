@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/SurfaceDeformer.h"
 
+#include "Deformation/SliverRemoval.h"
+
 #include <algorithm>
 
 namespace cartan
@@ -19,6 +21,7 @@ void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
     this->Common->Follow(relative, wantTransforms, result);
   }
   this->Common->Restore(wantTransforms, result);
+  CarryRiders(this->Problem.Riders, *this->Problem.Rest, result);
 }
 
 bool SurfaceDeformer::Serves(const HandleProblem& problem) const

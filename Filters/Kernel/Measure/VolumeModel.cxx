@@ -15,36 +15,64 @@ namespace cartan
 {
 namespace
 {
-constexpr int RaysAround = 6;
+/// What the rays around count together, in parts of the one in the middle.
+constexpr double WeightAround = 6.0;
 
-/// The mean length of the rays from a vertex that leave the body; negative if
-/// none does. A ray that meets a triangle from outside was never inside.
-double MeanDepth(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-  const Points& areaVectors, double offset, const RayCaster& castRay)
+/// A ray's direction and how much it counts.
+struct Ray
 {
+  Eigen::Vector3d Direction;
+  double Weight;
+};
+
+/// One ray against the normal, and around it one tilted towards each neighbor of
+/// the vertex, so that the rays go with the surface however it lies and in whatever
+/// order its points come. Those around count by the angles between them.
+void ConeOfRays(const TriangleMesh& mesh, const Points& points, int vertex,
+  const Eigen::Vector3d& normal, std::vector<Ray>& rays)
+{
+  rays.assign(1, { -normal, 1.0 });
   const double halfAngle = 15.0 * Pi / 180.0;
   const Eigen::Vector3d side = normal.unitOrthogonal();
   const Eigen::Vector3d other = normal.cross(side);
-  double sum = 0.0;
-  int count = 0;
-  for (int ray = 0; ray <= RaysAround; ++ray)
+  std::vector<double> turns;
+  for (int d = mesh.RingBegin(vertex); d < mesh.RingEnd(vertex); ++d)
   {
-    Eigen::Vector3d direction = -normal;
-    if (ray > 0)
+    const Eigen::Vector3d edge = (points.row(mesh.Neighbor(d)) - points.row(vertex)).transpose();
+    if ((edge - edge.dot(normal) * normal).norm() > 1e-6 * edge.norm())
     {
-      const double turn = FullTurn * ray / RaysAround;
-      direction = -std::cos(halfAngle) * normal +
-        std::sin(halfAngle) * (std::cos(turn) * side + std::sin(turn) * other);
-    }
-    // The start is moved off the vertex's own triangles.
-    const RayHit hit = castRay(point + offset * direction, direction);
-    if (hit.Distance >= 0.0 && areaVectors.row(hit.Triangle).dot(direction) > 0.0)
-    {
-      sum += hit.Distance + offset;
-      ++count;
+      turns.push_back(std::atan2(edge.dot(other), edge.dot(side)));
     }
   }
-  return count ? sum / count : -1.0;
+  std::sort(turns.begin(), turns.end());
+  for (std::size_t i = 0; i < turns.size(); ++i)
+  {
+    const double before = i > 0 ? turns[i - 1] : turns.back() - FullTurn;
+    const double after = i + 1 < turns.size() ? turns[i + 1] : turns.front() + FullTurn;
+    rays.push_back({ -std::cos(halfAngle) * normal +
+        std::sin(halfAngle) * (std::cos(turns[i]) * side + std::sin(turns[i]) * other),
+      WeightAround * 0.5 * (after - before) / FullTurn });
+  }
+}
+
+/// The mean length of the rays from a vertex that leave the body; negative if
+/// none does. A ray that meets a triangle from outside was never inside.
+double MeanDepth(const Eigen::Vector3d& point, const std::vector<Ray>& rays,
+  const Points& areaVectors, double offset, const RayCaster& castRay)
+{
+  double sum = 0.0;
+  double weight = 0.0;
+  for (const Ray& ray : rays)
+  {
+    // The start is moved off the vertex's own triangles.
+    const RayHit hit = castRay(point + offset * ray.Direction, ray.Direction);
+    if (hit.Distance >= 0.0 && areaVectors.row(hit.Triangle).dot(ray.Direction) > 0.0)
+    {
+      sum += ray.Weight * (hit.Distance + offset);
+      weight += ray.Weight;
+    }
+  }
+  return weight > 0.0 ? sum / weight : -1.0;
 }
 
 /// Depths at unmeasured vertices, harmonic between measured ones.
@@ -192,6 +220,7 @@ void MeasureDepths(const TriangleMesh& mesh, const Points& points, const Points&
     context.For(last - first,
       [&](int begin, int end)
       {
+        std::vector<Ray> rays;
         for (int v = first + begin; v < first + end; ++v)
         {
           if (!mesh.IsUsed(v) || !model.EnclosesVolume[mesh.Component(v)] ||
@@ -199,8 +228,9 @@ void MeasureDepths(const TriangleMesh& mesh, const Points& points, const Points&
           {
             continue;
           }
-          const double depth = MeanDepth(
-            points.row(v).transpose(), normals.row(v).transpose(), areaVectors, offset, castRay);
+          ConeOfRays(mesh, points, v, normals.row(v).transpose(), rays);
+          const double depth =
+            MeanDepth(points.row(v).transpose(), rays, areaVectors, offset, castRay);
           model.IsMeasured[v] = depth >= 0.0;
           model.LocalDepth[v] = std::max(depth, 0.0);
         }

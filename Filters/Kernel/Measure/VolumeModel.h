@@ -49,10 +49,10 @@ struct VolumeModel
 };
 
 /// Measures the depth by a cone of rays (half angle 15 degrees) around the
-/// inward normal, the mean of those that leave the body, and places the middle
-/// of the body c = p - L / 2 N, smoothed by one implicit step (M + tau L) c' =
-/// M c, tau = .02 median(depth)^2 of the component. IsEmpty() if no component
-/// encloses volume.
+/// inward normal, one towards each neighbor, the mean of those that leave the
+/// body, and places the middle of the body c = p - L / 2 N, smoothed by one
+/// implicit step (M + tau L) c' = M c, tau = .02 median(depth)^2 of the component.
+/// IsEmpty() if no component encloses volume.
 VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
   const RayCaster& castRay, const ExecutionContext& context = {});
 

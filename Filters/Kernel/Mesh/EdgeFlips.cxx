@@ -40,6 +40,35 @@ double SmallestAngle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const E
   return std::min({ Angle(b - a, c - a), Angle(c - b, a - b), Angle(a - c, b - c) });
 }
 
+/// The unit normal; zero for a cap or needle too thin to have one.
+Eigen::Vector3d Normal(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+  const FlipOptions& options)
+{
+  const Eigen::Vector3d areaVector = (b - a).cross(c - a);
+  const double area = areaVector.norm();
+  const double longest = LongestEdgeSquared(a, b, c);
+  return HasArea(area, longest) && area > options.CapHeight * longest
+    ? Eigen::Vector3d(areaVector / area)
+    : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+/// Whether all normals that there are lie within `angle` of each other.
+bool AreWithin(const std::array<Eigen::Vector3d, 4>& normals, double angle)
+{
+  const double least = std::cos(angle);
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int j = 0; j < i; ++j)
+    {
+      if (!normals[i].isZero(0.0) && !normals[j].isZero(0.0) && normals[i].dot(normals[j]) < least)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 /// Triangles that are flipped in place. Side `s` lies against side Across[s].
 class FlipMesh
 {
@@ -76,15 +105,9 @@ public:
     {
       return false;
     }
-    const Eigen::Vector3d pa = this->Positions.row(SideFrom(this->Corners, side));
-    const Eigen::Vector3d pb = this->Positions.row(SideTo(this->Corners, side));
-    const Eigen::Vector3d pc = this->Positions.row(c);
-    const Eigen::Vector3d pd = this->Positions.row(d);
-    const double before = std::min(SmallestAngle(pa, pb, pc), SmallestAngle(pb, pa, pd));
-    const double after = std::min(SmallestAngle(pd, pc, pa), SmallestAngle(pc, pd, pb));
-    return after > before + Improvement &&
-      this->KeepsShape({ this->Normal(pa, pb, pc), this->Normal(pb, pa, pd) },
-        { this->Normal(pc, pa, pd), this->Normal(pd, pb, pc) });
+    return FlipImproves(this->Positions.row(SideFrom(this->Corners, side)),
+      this->Positions.row(SideTo(this->Corners, side)), this->Positions.row(c),
+      this->Positions.row(d), this->Options);
   }
 
   /// The triangles (a, b, c) and (b, a, d) become (c, a, d) and (d, b, c).
@@ -130,44 +153,23 @@ private:
     }
   }
 
-  /// The unit normal; zero for a cap or needle too thin to have one.
-  Eigen::Vector3d Normal(
-    const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) const
-  {
-    const Eigen::Vector3d areaVector = (b - a).cross(c - a);
-    const double area = areaVector.norm();
-    const double longest = LongestEdgeSquared(a, b, c);
-    return HasArea(area, longest) && area > this->Options.CapHeight * longest
-      ? Eigen::Vector3d(areaVector / area)
-      : Eigen::Vector3d(Eigen::Vector3d::Zero());
-  }
-
-  /// All normals that there are lie within MaximumAngle of each other.
-  bool KeepsShape(
-    const std::array<Eigen::Vector3d, 2>& before, const std::array<Eigen::Vector3d, 2>& after) const
-  {
-    const double least = std::cos(this->Options.MaximumAngle);
-    const std::array<Eigen::Vector3d, 4> normals = { before[0], before[1], after[0], after[1] };
-    for (int i = 0; i < 4; ++i)
-    {
-      for (int j = 0; j < i; ++j)
-      {
-        if (!normals[i].isZero(0.0) && !normals[j].isZero(0.0) &&
-          normals[i].dot(normals[j]) < least)
-        {
-          return false;
-        }
-      }
-    }
-    return true;
-  }
-
   Triangles& Corners;
   const Points& Positions;
   FlipOptions Options;
   std::vector<int> Across;                 // 3 #T, -1 at borders
   std::unordered_set<std::uint64_t> Edges; // that exist
 };
+}
+
+bool FlipImproves(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+  const Eigen::Vector3d& d, const FlipOptions& options)
+{
+  const double before = std::min(SmallestAngle(a, b, c), SmallestAngle(b, a, d));
+  const double after = std::min(SmallestAngle(d, c, a), SmallestAngle(c, d, b));
+  return after > before + Improvement &&
+    AreWithin({ Normal(a, b, c, options), Normal(b, a, d, options), Normal(c, a, d, options),
+                Normal(d, b, c, options) },
+      options.MaximumAngle);
 }
 
 int FlipEdges(Triangles& triangles, const Points& points, const FlipOptions& options,

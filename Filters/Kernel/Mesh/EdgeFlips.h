@@ -18,6 +18,12 @@ struct FlipOptions
   double CapHeight = 1e-3;
 };
 
+/// Whether a flip of the edge from a to b, with c on its left and d on its right,
+/// to one from d to c makes the smallest of the six angles at it larger, by more
+/// than rounding, and turns no normal farther than the options allow.
+bool FlipImproves(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+  const Eigen::Vector3d& d, const FlipOptions& options);
+
 /// Flips inner edges while that makes the smallest of the six angles at the edge
 /// larger, which in the plane leads to a Delaunay triangulation (Lawson, Software
 /// for C1 Surface Interpolation, Mathematical Software III, 1977) and takes caps

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/ExecutionContext.h"
+#include "Deformation/HandleProblem.h"
+
+namespace cartan
+{
+/// The problem on a mesh without slivers, with the same vertices. Slivers are
+/// triangles that discretize nothing and only break the numbers: *caps*, a vertex
+/// lower over the opposite edge than 5 % of it, give cotangent weights of the
+/// inverse of that height with both signs, and *needles*, an edge shorter than
+/// .1 % of all other edges of its triangles, weights of that ratio.
+///
+/// A free vertex inside three triangles one of which is a cap, and a free end of
+/// a needle's edge, are taken out of the mesh: they become Riders on a triangle
+/// that stays, so that the surface around them bends as if they were not there.
+/// A cap across the border is left out, and elsewhere its long edge is flipped, as
+/// intrinsic Delaunay triangulations do (Fisher et al., An Algorithm for the
+/// Construction of Intrinsic Delaunay Triangulations with Applications to Digital
+/// Geometry Processing, 2006), but where that would change the shape: the
+/// triangles' normals, of caps higher than 1 %, are more than 30 degrees apart.
+/// Vertices of handles stay in the mesh, and the components keep their numbers.
+///
+/// The problem as it is, and the same objects, when there is no sliver. O(#V + #T),
+/// and again as often as slivers hang on slivers. Throws Error(Aborted).
+HandleProblem WithoutSlivers(HandleProblem problem, const ExecutionContext& context = {});
+
+/// Puts the riders where the triangles that carry them went: from `rest`, in the
+/// barycentric coordinates and at the height, in parts of the root of the area,
+/// that they have there; exactly where they are when the triangle did not move.
+/// Writes Positions, and Transforms and FrameScale where those are filled.
+void CarryRiders(const std::vector<Rider>& riders, const Points& rest, DeformedSurface& result);
+}
