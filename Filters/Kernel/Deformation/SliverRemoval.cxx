@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace cartan
@@ -18,6 +19,10 @@ constexpr double LargestCap = 0.05;
 
 /// A needle's short edge in parts of the longest of each of its triangles.
 constexpr double ShortEdge = 1e-3;
+
+/// The same in parts of the longest edge at either of its ends: what lies between
+/// such vertices is smaller than what rounding leaves of a large system.
+constexpr double TinyEdge = 1e-5;
 
 /// Of twice the area in parts of the longest edge squared: what can carry a rider.
 constexpr double SmallestCarrier = 1e-2;
@@ -73,6 +78,7 @@ public:
     this->IsLocked.assign(count, 0);
     this->Changed = this->Mesh->GetTriangles();
     this->HasChanged = false;
+    this->MeasureRings();
     for (int v = 0; v < count; ++v)
     {
       for (int d = this->Mesh->RingBegin(v); d < this->Mesh->RingEnd(v); ++d)
@@ -95,6 +101,19 @@ public:
 
 private:
   Eigen::Vector3d At(int v) const { return this->Rest.row(v); }
+
+  void MeasureRings()
+  {
+    this->LongestAt.assign(this->Mesh->NumberOfVertices(), 0.0);
+    for (int v = 0; v < this->Mesh->NumberOfVertices(); ++v)
+    {
+      for (int d = this->Mesh->RingBegin(v); d < this->Mesh->RingEnd(v); ++d)
+      {
+        this->LongestAt[v] = std::max(
+          this->LongestAt[v], (this->At(this->Mesh->Neighbor(d)) - this->At(v)).squaredNorm());
+      }
+    }
+  }
 
   /// The edge across from the origin of d in its left triangle, seen from outside
   /// of that: from the triangle's third vertex to its second.
@@ -122,17 +141,18 @@ private:
   {
     const int w = this->Mesh->Neighbor(d);
     const double squared = (this->At(w) - this->At(v)).squaredNorm();
+    double triangles = std::numeric_limits<double>::infinity();
     for (const int side : { d, this->Mesh->Twin(d) })
     {
       const int apex = this->Mesh->Opposite(side);
-      if (apex >= 0 &&
-        squared >=
-          ShortEdge * ShortEdge * LongestEdgeSquared(this->At(v), this->At(w), this->At(apex)))
+      if (apex >= 0)
       {
-        return false;
+        triangles =
+          std::min(triangles, LongestEdgeSquared(this->At(v), this->At(w), this->At(apex)));
       }
     }
-    return true;
+    return squared < ShortEdge * ShortEdge * triangles ||
+      squared < TinyEdge * TinyEdge * std::max(this->LongestAt[v], this->LongestAt[w]);
   }
 
   bool MayGo(int v) const { return this->Handle[v] == 0 && !this->IsFirst[v]; }
@@ -283,31 +303,34 @@ private:
   }
 
   /// The triangles around `goes` without `stays` hang on `stays` then, unless that
-  /// turns one of them away. The best of them carries.
+  /// turns one of them away. The best around both carries.
   bool Merge(int goes, int stays)
   {
     std::array<int, 3> best = { -1, -1, -1 };
     double bestHeight = SmallestCarrier;
-    for (int d = this->Mesh->RingBegin(goes); d < this->Mesh->RingEnd(goes); ++d)
+    for (const int center : { goes, stays })
     {
-      const int next = this->Mesh->NextAround(goes, d);
-      const int x = this->Mesh->Neighbor(d);
-      if (next < 0 || x == stays || this->Mesh->Neighbor(next) == stays)
+      for (int d = this->Mesh->RingBegin(center); d < this->Mesh->RingEnd(center); ++d)
       {
-        continue;
-      }
-      const int y = this->Mesh->Neighbor(next);
-      const Eigen::Vector3d before = UnitOfHeight(this->At(goes), this->At(x), this->At(y));
-      const Eigen::Vector3d after = UnitOfHeight(this->At(stays), this->At(x), this->At(y));
-      if (before.dot(after) < LeastCosine * before.norm() * after.norm())
-      {
-        return false;
-      }
-      const double height = RelativeHeight(this->At(stays), this->At(x), this->At(y));
-      if (height > bestHeight)
-      {
-        bestHeight = height;
-        best = { stays, x, y };
+        const int next = this->Mesh->NextAround(center, d);
+        const int x = this->Mesh->Neighbor(d);
+        const int y = next < 0 ? stays : this->Mesh->Neighbor(next);
+        if (x == goes || x == stays || y == goes || y == stays || this->IsNear(goes, stays, x, y))
+        {
+          continue;
+        }
+        const Eigen::Vector3d before = UnitOfHeight(this->At(center), this->At(x), this->At(y));
+        const Eigen::Vector3d after = UnitOfHeight(this->At(stays), this->At(x), this->At(y));
+        if (before.dot(after) < LeastCosine * before.norm() * after.norm())
+        {
+          return false;
+        }
+        const double height = RelativeHeight(this->At(stays), this->At(x), this->At(y));
+        if (height > bestHeight)
+        {
+          bestHeight = height;
+          best = { stays, x, y };
+        }
       }
     }
     if (best[0] < 0)
@@ -319,6 +342,16 @@ private:
     this->LockRing(stays);
     this->Rename(goes, stays);
     return true;
+  }
+
+  /// Whether one of two vertices is about as near as those that are merged: a
+  /// triangle with it is a sliver itself, and its normal says nothing.
+  bool IsNear(int goes, int stays, int x, int y) const
+  {
+    const double merged = (this->At(goes) - this->At(stays)).squaredNorm();
+    const double nearest = std::min(
+      (this->At(x) - this->At(goes)).squaredNorm(), (this->At(y) - this->At(goes)).squaredNorm());
+    return nearest < 100.0 * merged;
   }
 
   void Rename(int goes, int stays)
@@ -381,7 +414,8 @@ private:
   std::shared_ptr<const TriangleMesh> Mesh;
   const Points& Rest;
   const std::vector<int>& Handle;
-  std::vector<char> IsFirst; // of a component, which gives it its number
+  std::vector<char> IsFirst;     // of a component, which gives it its number
+  std::vector<double> LongestAt; // squared length of the longest edge at a vertex
   std::vector<char> IsLocked;
   Triangles Changed; // -1 where one goes
   bool HasChanged = false;

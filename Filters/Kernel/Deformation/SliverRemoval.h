@@ -10,7 +10,8 @@ namespace cartan
 /// triangles that discretize nothing and only break the numbers: *caps*, a vertex
 /// lower over the opposite edge than 5 % of it, give cotangent weights of the
 /// inverse of that height with both signs, and *needles*, an edge shorter than
-/// .1 % of all other edges of its triangles, weights of that ratio.
+/// .1 % of the longest of each of its triangles, or than 1e-5 of the longest edge
+/// at one of its ends, weights of that ratio.
 ///
 /// A free vertex inside three triangles one of which is a cap, and a free end of
 /// a needle's edge, are taken out of the mesh: they become Riders on a triangle
