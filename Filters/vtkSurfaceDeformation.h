@@ -255,8 +255,9 @@ public:
   int GetNumberOfFactorizations() const;
 
   /**
-   * The number of free points that the last update computed; of a composite
-   * input, those of the last block.
+   * The number of free points that the last update solved for, without those that
+   * triangles carry because they are at slivers; of a composite input, those of
+   * the last block.
    */
   int GetNumberOfFreePoints() const;
 

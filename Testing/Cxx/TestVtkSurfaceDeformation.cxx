@@ -809,12 +809,13 @@ TEST(SurfaceDeformation, HoldsTogetherThroughPolygonsWithoutArea)
   EXPECT_TRUE(fixture.Log->Errors.empty());
   vtktest::ExpectMessage(
     fixture.Log->Warnings, { "6 cells (ids 6, 6, 7, 7, 8, ...) without area" });
-  EXPECT_EQ(fixture.Filter->GetNumberOfFreePoints(), 12);
+  // Of the two rows in one place one is solved for, and carries the other.
+  EXPECT_EQ(fixture.Filter->GetNumberOfFreePoints(), 8);
   const cartan::Points result = vtktest::PointsOf(fixture.Filter->GetOutput());
   ASSERT_TRUE(result.allFinite());
   for (int i = 0; i < 4; ++i)
   {
-    EXPECT_LT((result.row(8 + i) - result.row(12 + i)).norm(), 0.1);
+    EXPECT_LT((result.row(8 + i) - result.row(12 + i)).norm(), 1e-12);
   }
 }
 
