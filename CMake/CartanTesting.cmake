@@ -69,7 +69,7 @@ function (cartan_add_script_tests)
     set_tests_properties("${test}" PROPERTIES
       LABELS      "${arg_LABEL}"
       ENVIRONMENT "${CARTAN_SCRIPT_ENVIRONMENT}"
-      TIMEOUT     300
+      TIMEOUT     "${CARTAN_TEST_TIMEOUT}"
       # One rank that fails leaves the others waiting.
       TIMEOUT_AFTER_MATCH "10;Traceback \\(most recent call last\\)")
     if (NOT arg_MAY_PRINT_ERRORS)
