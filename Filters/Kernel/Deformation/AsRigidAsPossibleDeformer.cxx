@@ -20,7 +20,6 @@ using Row = Eigen::RowVector3d;
 AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, RigidityEnergy energy,
   InitialGuess guess, SolverBackend backend, const ExecutionContext& context)
   : SurfaceDeformer(std::move(problem))
-  , Energy(energy)
   , GuessKind(guess)
 {
   HandleProblem ofGuess = this->Problem;

@@ -139,7 +139,6 @@ private:
   void Start(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
 
-  RigidityEnergy Energy;
   InitialGuess GuessKind;
   std::unique_ptr<FrameDeformer> Guess;
   std::shared_ptr<const HandleLaplacian> System;
