@@ -31,7 +31,8 @@
  * degrees or more about different axes are an error. Arrays of the output
  * besides:
  * - `RigidityEnergy` (GenerateRigidityEnergy): point array of one double, each
- *   point's share of the energy, in squared length units.
+ *   point's share of the energy, in squared length units; with MEAN_VALUE weights,
+ *   which have the unit 1 / length, in length units.
  *
  * References: Sorkine, Alexa, As-Rigid-As-Possible Surface Modeling, Symposium
  * on Geometry Processing 2007. Chao, Pinkall, Sanan, Schroeder, A Simple

@@ -15,7 +15,10 @@
 #include "vtkTypeInt32Array.h"
 #include "vtkTypeInt64Array.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace cartan
@@ -170,6 +173,37 @@ std::vector<char> BrokenPolygons(
   return isBroken;
 }
 
+/// vtkTriangleFilter cuts a quad along the shorter diagonal. Those of a rectangle are
+/// equally long: rounding would choose, and a turned surface would have other
+/// triangles. Returns which polygons are such quads, convex along the diagonal that is
+/// taken for equal ones, from corner 1 to 3.
+std::vector<char> EvenQuads(vtkPolyData* input)
+{
+  constexpr double even = 1e-6; // of squares; what single precision leaves of a rectangle
+  std::vector<char> isEven(input->GetNumberOfPolys(), 0);
+  vtkNew<vtkIdList> ids;
+  for (std::size_t polygon = 0; polygon < isEven.size(); ++polygon)
+  {
+    input->GetPolys()->GetCellAtId(static_cast<vtkIdType>(polygon), ids);
+    if (ids->GetNumberOfIds() != 4)
+    {
+      continue;
+    }
+    Eigen::Vector3d x[4];
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      input->GetPoint(ids->GetId(corner), x[corner].data());
+    }
+    const double first = (x[2] - x[0]).squaredNorm();
+    const double second = (x[3] - x[1]).squaredNorm();
+    const Eigen::Vector3d normal = (x[1] - x[0]).cross(x[3] - x[0]);
+    const Eigen::Vector3d other = (x[3] - x[2]).cross(x[1] - x[2]);
+    isEven[polygon] =
+      std::abs(first - second) <= even * (first + second) && normal.dot(other) > 0.0;
+  }
+  return isEven;
+}
+
 /// The polygons and strips as vtkTriangleFilter cuts them, with their cells' ids.
 vtkSmartPointer<vtkPolyData> CutPolygons(vtkPolyData* input)
 {
@@ -206,9 +240,22 @@ void TriangulatePolygons(vtkPolyData* input, CellTriangles& triangles)
       static_cast<int>(ids->GetId(c)) };
     AddTriangle(corners, cell, triangles);
   };
+  const std::vector<char> isEven = EvenQuads(input);
+  std::vector<char> isCut(isEven.size(), 0);
   for (vtkIdType triangle = 0; triangle < cut->GetNumberOfPolys(); ++triangle)
   {
     const auto polygon = static_cast<std::size_t>(from->GetValue(triangle) - firstCell);
+    if (polygon < isEven.size() && isEven[polygon])
+    {
+      if (!isCut[polygon])
+      {
+        input->GetPolys()->GetCellAtId(static_cast<vtkIdType>(polygon), ids);
+        add(0, 1, 3, from->GetValue(triangle));
+        add(2, 3, 1, from->GetValue(triangle));
+        isCut[polygon] = 1;
+      }
+      continue;
+    }
     cut->GetPolys()->GetCellAtId(triangle, ids);
     if (ids->GetNumberOfIds() == 3 && (polygon >= isBroken.size() || !isBroken[polygon]))
     {
@@ -217,7 +264,7 @@ void TriangulatePolygons(vtkPolyData* input, CellTriangles& triangles)
   }
   for (std::size_t polygon = 0; polygon < isBroken.size(); ++polygon)
   {
-    if (isBroken[polygon])
+    if (isBroken[polygon] && !isEven[polygon])
     {
       input->GetPolys()->GetCellAtId(static_cast<vtkIdType>(polygon), ids);
       for (vtkIdType corner = 2; corner < ids->GetNumberOfIds(); ++corner)

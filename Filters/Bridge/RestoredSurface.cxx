@@ -93,6 +93,8 @@ Correspondence ReadCorrespondence(vtkPolyData* prepared, vtkPolyData* original)
 Points MovedPoints(
   const Correspondence& ids, const Points& prepared, const Points& original, IdSample& parted)
 {
+  Points first = original;
+  // Of the differences from the first: copies in the same place leave it exactly.
   Points sum = Points::Zero(original.rows(), 3);
   std::vector<int> count(original.rows(), 0);
   std::vector<char> isParted(original.rows(), 0);
@@ -101,12 +103,16 @@ Points MovedPoints(
     const Eigen::RowVector3d rest = original.row(v);
     const Eigen::RowVector3d place =
       prepared.row(from) + (rest - original.row(ids.OriginalPoints[from]));
-    const Eigen::RowVector3d mean = sum.row(v) / std::max(count[v], 1);
+    if (count[v] == 0)
+    {
+      first.row(v) = place;
+    }
+    const Eigen::RowVector3d mean = first.row(v) + sum.row(v) / std::max(count[v], 1);
     // Copies that move alike do so but for the last digits of a solution.
     isParted[v] = isParted[v] ||
       (count[v] > 0 &&
         (place - mean).norm() > 1e-6 * ((place - rest).norm() + (mean - rest).norm()));
-    sum.row(v) += place;
+    sum.row(v) += place - first.row(v);
     ++count[v];
   };
   for (std::size_t v = 0; v < ids.PreparedPoints.size(); ++v)
@@ -126,13 +132,13 @@ Points MovedPoints(
   }
   for (Eigen::Index v = 0; v < sum.rows(); ++v)
   {
-    sum.row(v) = count[v] > 0 ? Eigen::RowVector3d(sum.row(v) / count[v]) : original.row(v);
+    first.row(v) += sum.row(v) / std::max(count[v], 1);
     if (isParted[v])
     {
       parted.Add(v);
     }
   }
-  return sum;
+  return first;
 }
 
 void WritePoints(vtkPolyData* original, const Points& positions, vtkPolyData* output)
@@ -237,6 +243,15 @@ struct ComputedNormals
   Points OfCells;
 };
 
+/// Rows of length zero stay that.
+void NormalizeRows(Points& rows)
+{
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+  {
+    rows.row(i).stableNormalize();
+  }
+}
+
 ComputedNormals ComputeNormals(
   const TriangleSoup& soup, const Points& positions, vtkIdType numberOfCells)
 {
@@ -250,8 +265,8 @@ ComputedNormals ComputeNormals(
       normals.OfPoints.row(soup.Faces(t, corner)) += areaVectors.row(t);
     }
   }
-  normals.OfPoints.rowwise().normalize();
-  normals.OfCells.rowwise().normalize();
+  NormalizeRows(normals.OfPoints);
+  NormalizeRows(normals.OfCells);
   return normals;
 }
 

@@ -108,6 +108,50 @@ TEST(KeyInterpolation, HasAContinuousDerivative)
   }
 }
 
+TEST(KeyInterpolation, CurvesTurnWithTheKeys)
+{
+  const Field values = RandomRows(30, 5);
+  const Eigen::Matrix3d rotation = shapes::RandomRigidMotion(8).Rotation;
+  Field turned = values;
+  for (int v = 0; v < 10; ++v)
+  {
+    turned.middleRows<3>(3 * v) = rotation * values.middleRows<3>(3 * v);
+  }
+  const KeyInterpolation original(Uneven, values, 3);
+  const KeyInterpolation moved(Uneven, turned, 3);
+  for (const double t : { -0.2, 0.1, 0.3, 0.62, 0.95, 1.4 })
+  {
+    const Eigen::VectorXd expected = original.Evaluate(t);
+    const Eigen::VectorXd actual = moved.Evaluate(t);
+    for (int v = 0; v < 10; ++v)
+    {
+      EXPECT_LT((actual.segment<3>(3 * v) - rotation * expected.segment<3>(3 * v)).norm(), 1e-13);
+    }
+  }
+}
+
+TEST(KeyInterpolation, VectorsOnALineAreLikeNumbers)
+{
+  const Field values = RandomRows(20, 5);
+  const Eigen::Vector3d direction(0.48, 0.6, 0.64);
+  Field vectors(60, 5);
+  for (int row = 0; row < 20; ++row)
+  {
+    vectors.middleRows<3>(3 * row) = direction * values.row(row);
+  }
+  const KeyInterpolation numbers(Uneven, values);
+  const KeyInterpolation onLines(Uneven, vectors, 3);
+  for (const double t : { -0.2, 0.1, 0.3, 0.62, 0.95, 1.4 })
+  {
+    const Eigen::VectorXd expected = numbers.Evaluate(t);
+    const Eigen::VectorXd actual = onLines.Evaluate(t);
+    for (int row = 0; row < 20; ++row)
+    {
+      EXPECT_LT((actual.segment<3>(3 * row) - expected[row] * direction).norm(), 1e-13);
+    }
+  }
+}
+
 TEST(KeyInterpolation, RunsBackwardsAsForwards)
 {
   const Field values = RandomRows(50, 5);

@@ -169,6 +169,38 @@ TEST(DiscreteFormsFilter, TableDoesNotChangeUnderRigidMotions)
   }
 }
 
+TEST(DiscreteFormsFilter, CutsRectanglesAlikeInEveryPosition)
+{
+  // Both diagonals of these quads are equally long, but for rounding.
+  const shapes::Shape tube = shapes::OpenCylinder(7, 6, 0.3, 2.0);
+  vtkNew<vtkCellArray> quads;
+  for (Eigen::Index t = 0; t < tube.Faces.rows(); t += 2)
+  {
+    quads->InsertNextCell(
+      { tube.Faces(t, 0), tube.Faces(t, 1), tube.Faces(t, 2), tube.Faces(t + 1, 2) });
+  }
+  std::vector<vtkIdType> edges;
+  for (unsigned int seed = 0; seed < 12; ++seed)
+  {
+    const int precision = seed % 2 == 0 ? VTK_DOUBLE : VTK_FLOAT;
+    const auto surface = vtktest::MakePolyData(
+      seed == 0 ? tube : shapes::RandomRigidMotion(seed, 5.0)(tube), precision);
+    surface->SetPolys(quads);
+    vtkNew<vtkDiscreteForms> filter;
+    filter->SetInputData(surface);
+    filter->Update();
+    vtkDataArray* neighbors =
+      vtkDataArray::SafeDownCast(filter->GetFormsTable()->GetColumnByName("Neighbor"));
+    std::vector<vtkIdType> ids;
+    for (vtkIdType row = 0; row < neighbors->GetNumberOfTuples(); ++row)
+    {
+      ids.push_back(static_cast<vtkIdType>(neighbors->GetTuple1(row)));
+    }
+    edges = edges.empty() ? ids : edges;
+    EXPECT_EQ(ids, edges) << seed;
+  }
+}
+
 TEST(DiscreteFormsFilter, ScalesLengthsAndHeightsOnly)
 {
   const Shape shape = shapes::RealMesh("elephant");

@@ -223,6 +223,64 @@ TEST_F(RestoreSurface, CopiesThatPartMeetInTheMiddle)
   EXPECT_EQ(Eigen::Vector3d(output->GetPoint(2)), Eigen::Vector3d(0.25, 0.0, 1.0));
 }
 
+TEST_F(RestoreSurface, CopiesThatStayLeaveTheOriginalToTheBit)
+{
+  // Six tetrahedra around an edge of their own: the edge's points have six copies, and
+  // the sum of six equal coordinates by six is not always that coordinate.
+  shapes::Shape star;
+  star.Positions.resize(14, 3);
+  std::vector<Eigen::Vector3i> faces;
+  for (int i = 0; i < 6; ++i)
+  {
+    const double angle = shapes::Pi * i / 3.0;
+    star.Positions.row(2 + 2 * i) << std::cos(angle), std::sin(angle), 0.1;
+    star.Positions.row(3 + 2 * i) << std::cos(angle + 0.5), std::sin(angle + 0.5), 0.1;
+    const int a = 2 + 2 * i;
+    faces.insert(faces.end(), { { 0, 1, a }, { 1, 0, a + 1 }, { 0, a, a + 1 }, { 1, a + 1, a } });
+  }
+  star.Faces = shapes::ToTriangles(faces);
+  for (unsigned int seed = 1; seed < 20; ++seed)
+  {
+    shapes::Random random(seed);
+    star.Positions.row(0) << 0.1 * random(), 0.1 * random(), 0.7 + 0.1 * random();
+    star.Positions.row(1) << 0.1 * random(), 0.1 * random(), -0.7 + 0.1 * random();
+    const auto original = vtktest::MakePolyData(star);
+    vtkPolyData* output = this->Run(Prepared(original), original);
+    EXPECT_TRUE(
+      vtktest::SameArray(output->GetPoints()->GetData(), original->GetPoints()->GetData()))
+      << seed;
+  }
+}
+
+TEST_F(RestoreSurface, NormalsWhereNoTriangleIsStayAsTheyAre)
+{
+  shapes::Shape shape = shapes::Bar(2, 2, 6, { 1, 1, 3 });
+  shape.Positions.conservativeResize(shape.Positions.rows() + 1, Eigen::NoChange);
+  shape.Positions.bottomRows<1>().setConstant(5.0);
+  const auto original = vtktest::MakePolyData(shape);
+  const vtkIdType alone = original->GetNumberOfPoints() - 1;
+  original->GetPointData()->SetNormals(vtktest::AddArray(original, "Normals", 3,
+    [](vtkIdType, double* normal)
+    {
+      normal[0] = 0.0;
+      normal[1] = 0.6;
+      normal[2] = 0.8;
+    }));
+  const auto prepared = Prepared(original);
+  const shapes::RigidMotion motion = shapes::RandomRigidMotion(7);
+  const cartan::Points moved = motion(vtktest::PointsOf(prepared));
+  for (Eigen::Index v = 0; v < moved.rows(); ++v)
+  {
+    prepared->GetPoints()->SetPoint(v, moved.row(v).data());
+  }
+  vtkDataArray* normals = this->Run(prepared, original)->GetPointData()->GetNormals();
+  EXPECT_EQ(Eigen::Vector3d(normals->GetTuple3(alone)), Eigen::Vector3d(0.0, 0.6, 0.8));
+  for (vtkIdType v = 0; v < alone; ++v)
+  {
+    EXPECT_NEAR(Eigen::Vector3d(normals->GetTuple3(v)).norm(), 1.0, 1e-12);
+  }
+}
+
 TEST_F(RestoreSurface, RefusesSurfacesThatDoNotBelongTogether)
 {
   const auto bar = SplitBar();

@@ -9,25 +9,36 @@ namespace cartan
 {
 namespace
 {
-/// A slope between two secants that keeps the cubics beside it monotone.
-double Limited(double slope, double before, double after)
+/// Of a dimension that is known at run time, without memory of its own.
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+
+/// At most as long as `bound`.
+Vector Shortened(const Vector& slope, double bound)
 {
-  if (!(before * after > 0.0))
+  const double length = slope.norm();
+  return length > bound ? Vector(slope * (bound / length)) : slope;
+}
+
+/// A slope between two secants that keeps the cubics beside it monotone where the
+/// secants have one direction; zero where these are opposite.
+Vector Limited(const Vector& slope, const Vector& before, const Vector& after)
+{
+  const double lengths = before.norm() * after.norm();
+  if (!(lengths > 0.0))
   {
-    return 0.0;
+    return Vector::Zero(slope.size());
   }
-  const double bound = 3.0 * std::min(std::abs(before), std::abs(after));
-  return std::copysign(std::min(std::abs(slope), bound), before);
+  const double agreement = 0.5 * (1.0 + std::clamp(before.dot(after) / lengths, -1.0, 1.0));
+  return Shortened(slope, 3.0 * agreement * std::min(before.norm(), after.norm()));
 }
 
 /// The slope at an end from the nearest two secants: that of the parabola, if
 /// it has the direction of the end's own secant.
-double EndSlope(double width, double secant, double nextWidth, double nextSecant)
+Vector EndSlope(double width, const Vector& secant, double nextWidth, const Vector& nextSecant)
 {
-  const double slope = secant + (secant - nextSecant) * width / (width + nextWidth);
-  return slope * secant > 0.0
-    ? std::copysign(std::min(std::abs(slope), 3.0 * std::abs(secant)), secant)
-    : 0.0;
+  const Vector slope = secant + (secant - nextSecant) * (width / (width + nextWidth));
+  return slope.dot(secant) > 0.0 ? Shortened(slope, 3.0 * secant.norm())
+                                 : Vector::Zero(slope.size());
 }
 }
 
@@ -43,7 +54,7 @@ KeyPlace PlaceBetweenKeys(double t, const std::vector<double>& parameters)
   return { static_cast<int>(before - parameters.begin()), (t - *before) / (*after - *before) };
 }
 
-KeyInterpolation::KeyInterpolation(std::vector<double> parameters, Field values)
+KeyInterpolation::KeyInterpolation(std::vector<double> parameters, Field values, int dimension)
   : Parameters(std::move(parameters))
   , Values(std::move(values))
 {
@@ -71,32 +82,39 @@ KeyInterpolation::KeyInterpolation(std::vector<double> parameters, Field values)
           (k > 0 ? " after " + std::to_string(this->Parameters[k - 1]) : "") + ".");
     }
   }
-  if (keys == 2)
+  if (keys > 2)
   {
-    return;
+    this->ComputeSlopes(dimension);
   }
+}
 
+void KeyInterpolation::ComputeSlopes(int dimension)
+{
+  const int keys = static_cast<int>(this->Parameters.size());
   std::vector<double> widths(keys - 1);
   for (int k = 0; k + 1 < keys; ++k)
   {
     widths[k] = this->Parameters[k + 1] - this->Parameters[k];
   }
-  std::vector<double> secants(keys - 1);
+  std::vector<Vector> secants(keys - 1);
   this->Slopes.resize(this->Values.rows(), keys);
-  for (Eigen::Index row = 0; row < this->Values.rows(); ++row)
+  for (Eigen::Index row = 0; row < this->Values.rows(); row += dimension)
   {
     for (int k = 0; k + 1 < keys; ++k)
     {
-      secants[k] = (this->Values(row, k + 1) - this->Values(row, k)) / widths[k];
+      secants[k] = (this->Values.col(k + 1).segment(row, dimension) -
+                     this->Values.col(k).segment(row, dimension)) /
+        widths[k];
     }
     for (int k = 1; k + 1 < keys; ++k)
     {
-      const double parabola =
+      const Vector parabola =
         (widths[k] * secants[k - 1] + widths[k - 1] * secants[k]) / (widths[k - 1] + widths[k]);
-      this->Slopes(row, k) = Limited(parabola, secants[k - 1], secants[k]);
+      this->Slopes.col(k).segment(row, dimension) = Limited(parabola, secants[k - 1], secants[k]);
     }
-    this->Slopes(row, 0) = EndSlope(widths[0], secants[0], widths[1], secants[1]);
-    this->Slopes(row, keys - 1) =
+    this->Slopes.col(0).segment(row, dimension) =
+      EndSlope(widths[0], secants[0], widths[1], secants[1]);
+    this->Slopes.col(keys - 1).segment(row, dimension) =
       EndSlope(widths[keys - 2], secants[keys - 2], widths[keys - 3], secants[keys - 3]);
   }
 }

@@ -28,6 +28,10 @@ KeyPlace PlaceBetweenKeys(double t, const std::vector<double>& parameters);
 /// the two adjacent secants, and zero if these differ in sign. Outside of the
 /// keys the function is linear, with the slope of the first or last one.
 ///
+/// The numbers may be the coordinates of vectors. Then slopes are limited as
+/// vectors, so that the curves turn with the keys: to 3 (1 + cos a) / 2 times the
+/// smaller secant, where a is the angle between the two.
+///
 /// The same numbers in reverse order at the mirrored parameters give the
 /// mirrored result.
 class KeyInterpolation
@@ -35,9 +39,10 @@ class KeyInterpolation
 public:
   KeyInterpolation() = default;
 
-  /// `values` is m x #keys, a column per key. Throws Error(BadInput) unless there
-  /// are at least two parameters, all finite and increasing, and as many columns.
-  KeyInterpolation(std::vector<double> parameters, Field values);
+  /// `values` is m x #keys, a column per key; each `dimension` rows, 1 to 3, are one
+  /// vector. Throws Error(BadInput) unless there are at least two parameters, all
+  /// finite and increasing, and as many columns.
+  KeyInterpolation(std::vector<double> parameters, Field values, int dimension = 1);
 
   /// The m numbers at t.
   Eigen::VectorXd Evaluate(double t, const ExecutionContext& context = {}) const;
@@ -48,6 +53,8 @@ public:
   std::size_t GetBytes() const { return TotalBytes(this->Parameters, this->Values, this->Slopes); }
 
 private:
+  void ComputeSlopes(int dimension);
+
   std::vector<double> Parameters;
   Field Values;
   Field Slopes; // m x #keys, empty for two keys

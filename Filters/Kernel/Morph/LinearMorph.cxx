@@ -11,7 +11,7 @@ LinearMorph::LinearMorph(const KeyFrames& keys)
     coordinates.col(static_cast<Eigen::Index>(k)) =
       Eigen::Map<const Eigen::VectorXd>(keys.Positions[k].data(), keys.Positions[k].size());
   }
-  this->Coordinates = KeyInterpolation(keys.Parameters, std::move(coordinates));
+  this->Coordinates = KeyInterpolation(keys.Parameters, std::move(coordinates), 3);
 }
 
 Points LinearMorph::Evaluate(double t, const ExecutionContext& context)

@@ -91,7 +91,7 @@ RigidPlacement::RigidPlacement(const KeyFrames& keys, Eigen::VectorXd weights)
     this->Centers.push_back(ComponentCenters(mesh, this->Keys.Positions[k], this->Weights));
     paths.col(k) = Eigen::Map<const Eigen::VectorXd>(this->Centers[k].data(), 3 * components);
   }
-  this->CenterPaths = KeyInterpolation(this->Keys.Parameters, std::move(paths));
+  this->CenterPaths = KeyInterpolation(this->Keys.Parameters, std::move(paths), 3);
   for (int k = 0; k + 1 < count; ++k)
   {
     const std::vector<Eigen::Matrix3d> rotations =
