@@ -38,8 +38,9 @@ bool IsComparable(const Field& field, const Relation& relation)
   {
     return false;
   }
-  // Rows of different units.
-  if (relation.Map.Scale != 1.0 && (field.Name == "Reference" || field.Name == "Current"))
+  // Rows of different units; an energy whose unit depends on the weights.
+  static const std::set<std::string> ofManyUnits = { "Reference", "Current", "RigidityEnergy" };
+  if (relation.Map.Scale != 1.0 && ofManyUnits.count(field.Name) > 0)
   {
     return false;
   }

@@ -6,6 +6,7 @@
 #include "vtkSMPTools.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -24,6 +25,13 @@ bool HasPlace(const Case& of)
   return of.Filter != "FrameReconstruction";
 }
 
+/// Mean value weights have the unit 1 / length, soft constraints none.
+bool HasNoUnit(const Case& of)
+{
+  return HasPlace(of) &&
+    !(of.Surface.Find("ConstraintWeight") && of.Get("LaplacianWeights", 1.0) >= 2.0);
+}
+
 double LargestCoordinate(const Case& of)
 {
   double largest = 0.0;
@@ -34,13 +42,15 @@ double LargestCoordinate(const Case& of)
   return largest;
 }
 
-/// How much a change of the points in their last digits changes a field of the result.
-Difference RoundingOf(const std::string& name, const Case& original, const Outcome& first)
+/// How much a change of the points in the last digits of a coordinate changes a field
+/// of the result.
+Difference RoundingOf(
+  const std::string& name, const Case& original, const Outcome& first, double coordinate)
 {
   Case changed = original;
   changed.Surface.IsFloat = false;
   Random random(original.Seed);
-  const double rounding = 1e-15 * LargestCoordinate(original);
+  const double rounding = 1e-15 * coordinate;
   const auto shake = [&](std::vector<Eigen::Vector3d>& points)
   {
     for (Eigen::Vector3d& point : points)
@@ -55,7 +65,11 @@ Difference RoundingOf(const std::string& name, const Case& original, const Outco
   for (const Field& field : first.Fields)
   {
     const Field* other = second.Find(field.Name, field.Where);
-    if (field.Name == name && other)
+    if (field.Name == name && !other)
+    {
+      return { name, std::numeric_limits<double>::infinity(), 0 };
+    }
+    if (field.Name == name)
     {
       Relation relation;
       if (original.Surface.IsFloat)
@@ -111,10 +125,10 @@ std::optional<Finding> CheckChanged(const std::string& name, const Case& origina
     return {};
   }
   finding.Text = difference.Describe();
-  const Difference rounding = RoundingOf(difference.Field, original, first);
-  const double larger =
-    LargestCoordinate(changed) / std::max(1e-300, LargestCoordinate(original) * relation.Map.Scale);
-  if (rounding.Size * std::max(1.0, larger) > 0.1 * difference.Size)
+  const double coordinate =
+    std::max(LargestCoordinate(original), LargestCoordinate(changed) / relation.Map.Scale);
+  const Difference rounding = RoundingOf(difference.Field, original, first, coordinate);
+  if (rounding.Size > 0.1 * difference.Size)
   {
     if (IsOfDigits(original))
     {
@@ -248,7 +262,7 @@ const std::vector<Invariant>& Invariants()
   {
     std::vector<Invariant> invariants = {
       { "rigid", HasPlace, CheckRigid },
-      { "units", HasPlace, CheckUnits },
+      { "units", HasNoUnit, CheckUnits },
       { "offset", HasPlace, CheckOffset },
       { "precision", Always, CheckPrecision },
       { "threads", Always, CheckThreads },

@@ -181,7 +181,7 @@ linear = [)"
       << List(std::vector<double>(rows.data(), rows.data() + 9), 9) << "]\ntranslation = ["
       << List(map.Translation) << R"(]
 before, after = by_id(original()), by_id(changed())
-worst = (0, None)
+worst = (-1.0, None)
 for i, p in before.items():
     moved = [sum(linear[3 * r + c] * p[c] for c in range(3)) + translation[r] for r in range(3)]
     if i in after:

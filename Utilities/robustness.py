@@ -1,0 +1,258 @@
+#!/usr/bin/env pvpython
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs every filter on every mesh of libcgal-demo, as it comes and after Prepare
+Surface, and prints the tables of Documentation/Robustness.md:
+
+    Utilities/robustness.sh [BUILD] [--points N] [--mesh NAME]...
+
+Each mesh has a process of its own, which a crash or a filter that takes more than a
+minute of processor time ends; it then goes on with the next filter.
+"""
+import argparse
+import collections
+import glob
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+
+SECONDS = 60
+DEFORMATIONS = ("AsRigidAsPossible", "Laplacian", "Multiresolution", "Poisson",
+                "RotationInvariant", "ShapePreserving", "Similarity")
+MORPHS = ("DiscreteForms", "Isometric", "DeformationGradient", "Linear")
+TASKS = ([name + "Deformation" for name in DEFORMATIONS]
+         + ["CurvatureError", "VolumeChange", "DiscreteForms", "FrameReconstruction"]
+         + ["SurfaceMorph " + name for name in MORPHS])
+
+
+def bounds_axis(surface):
+    """The longest axis of the bounding box, with its two ends."""
+    bounds = surface.GetBounds()
+    axis = max(range(3), key=lambda i: bounds[2 * i + 1] - bounds[2 * i])
+    return axis, bounds[2 * axis], bounds[2 * axis + 1]
+
+
+def bent(surface, angle):
+    """A copy, bent by an angle in degrees over the length of its longest axis."""
+    import numpy
+    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    axis, low, high = bounds_axis(surface)
+    points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)
+    length = max(high - low, 1e-300)
+    turn = math.radians(angle) / length
+    along, up = points[:, axis] - low, points[:, (axis + 1) % 3]
+    radius = 1.0 / turn
+    result = points.copy()
+    result[:, axis] = low + (radius - up) * numpy.sin(along * turn)
+    result[:, (axis + 1) % 3] = radius - (radius - up) * numpy.cos(along * turn)
+    copy = vtkPolyData()
+    copy.DeepCopy(surface)
+    vtk_points = vtkPoints()
+    vtk_points.SetData(numpy_to_vtk(result, deep=True))
+    copy.SetPoints(vtk_points)
+    return copy
+
+
+def with_handles(surface):
+    """The surface with its two ends marked: 1 and 2."""
+    import numpy
+    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    axis, low, high = bounds_axis(surface)
+    along = vtk_to_numpy(surface.GetPoints().GetData())[:, axis]
+    handles = numpy.zeros(len(along), dtype=numpy.int32)
+    handles[along <= low + 0.15 * (high - low)] = 1
+    handles[along >= high - 0.15 * (high - low)] = 2
+    array = numpy_to_vtk(handles, deep=True)
+    array.SetName("Handle")
+    marked = vtkPolyData()
+    marked.ShallowCopy(surface)
+    marked.GetPointData().AddArray(array)
+    return marked
+
+
+def end_motion(vtkcartan, surface):
+    """A turn of the far end by 40 degrees about the middle of the surface."""
+    axis, _, _ = bounds_axis(surface)
+    motion = vtkcartan.vtkHandleMotion()
+    motion.SetAxis(*[1.0 if i == (axis + 1) % 3 else 0.0 for i in range(3)])
+    motion.SetAngle(40.0)
+    motion.SetCenter(*surface.GetCenter())
+    return motion
+
+
+def make_filter(vtkcartan, task, surface):
+    name, _, method = task.partition(" ")
+    filter = getattr(vtkcartan, "vtk" + name)()
+    if name.endswith("Deformation"):
+        filter.SetInputData(with_handles(surface))
+        filter.SetHandleMotion(2, end_motion(vtkcartan, surface))
+    elif name == "SurfaceMorph":
+        filter.AddInputData(surface)
+        filter.AddInputData(bent(surface, 40.0))
+        getattr(filter, "SetMethodTo" + method)()
+        filter.SetParameter(0.5)
+    else:
+        filter.SetInputData(0, surface)
+        if name == "VolumeChange":
+            filter.SetInputData(1, bent(surface, 40.0))
+        if name == "FrameReconstruction":
+            forms = vtkcartan.vtkDiscreteForms()
+            forms.SetInputData(surface)
+            filter.SetInputConnection(1, forms.GetOutputPort(1))
+    return filter
+
+
+def is_finite(output):
+    """Whether points and arrays are, but for those that say NaN where nothing is."""
+    import numpy
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    documented = ("AreaRatio", "EdgeLengthRatio", "LocalVolume", "LocalVolumeRatio")
+    arrays = [output.GetPoints().GetData()]
+    arrays += [output.GetPointData().GetArray(i)
+               for i in range(output.GetPointData().GetNumberOfArrays())]
+    return all(numpy.isfinite(vtk_to_numpy(array)).all()
+               for array in arrays if array and array.GetName() not in documented)
+
+
+def execute(filter, surface):
+    """A result and what was said."""
+    messages = collections.defaultdict(list)
+
+    def observe(event):
+        def note(_, __, text):
+            messages[event].append(text.split("): ", 1)[-1].strip())
+        note.CallDataType = "string0"
+        return note
+    filter.AddObserver("ErrorEvent", observe("error"))
+    filter.AddObserver("WarningEvent", observe("warning"))
+    filter.Update()
+    output = filter.GetOutput()
+    if messages["error"]:
+        return "refused", messages["error"][0]
+    if output.GetNumberOfPoints() != surface.GetNumberOfPoints():
+        return "wrong", "a partial output"
+    if not is_finite(output):
+        return "wrong", "not finite"
+    return "processed", " ".join(messages["warning"])
+
+
+def work(path, done):
+    """One JSON line per state and task, as soon as it is known."""
+    import vtkcartan
+    from cartan_testing import read_off
+
+    def say(*words):
+        print(json.dumps(words), flush=True)
+
+    surface = read_off(path)
+    for state in ("before", "after"):
+        if state == "after":
+            prepare = vtkcartan.vtkPrepareSurface()
+            prepare.SetInputData(surface)
+            result = "", ""
+            prepare.AddObserver("ErrorEvent", lambda *_: None)
+            prepare.Update()
+            surface = prepare.GetOutput()
+        for task in TASKS:
+            if [state, task] in done:
+                continue
+            say("begin", state, task)
+            signal.setitimer(signal.ITIMER_PROF, SECONDS)
+            if surface.GetNumberOfPolys() == 0:
+                result = "refused", "no triangles"
+            else:
+                result = execute(make_filter(vtkcartan, task, surface), surface)
+            signal.setitimer(signal.ITIMER_PROF, 0)
+            say("end", state, task, surface.GetNumberOfPoints(), *result)
+
+
+def watch(path):
+    """All results of a mesh, by state and task."""
+    results = {}
+    running = True
+    while running:
+        done = json.dumps([list(key) for key in results])
+        child = subprocess.run([sys.executable if "pvpython" in sys.executable else "pvpython",
+                                __file__, "--work", path, "--done", done],
+                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                               check=False)
+        begun = None
+        for line in child.stdout.splitlines():
+            if not line.startswith("["):
+                continue
+            words = json.loads(line)
+            if words[0] == "begin":
+                begun = tuple(words[1:3])
+            else:
+                results[begun] = words[4:]
+                begun = None
+        running = begun is not None
+        if running:
+            slow = child.returncode in (-signal.SIGPROF, 128 + signal.SIGPROF)
+            text = f"more than {SECONDS} s" if slow else f"crash, exit code {child.returncode}"
+            results[begun] = ["wrong", text]
+    return results
+
+
+def print_tables(results):
+    """`results` by mesh, state and task."""
+    print("| filter | before: processed | refused | wrong | after: processed | refused | wrong |")
+    print("|---|---|---|---|---|---|---|")
+    for task in TASKS:
+        cells = [task]
+        for state in ("before", "after"):
+            count = collections.Counter(
+                of_mesh.get((state, task), ["wrong"])[0] for of_mesh in results.values())
+            cells += [str(count[kind]) for kind in ("processed", "refused", "wrong")]
+        print("| " + " | ".join(cells) + " |")
+    print("\n| mesh | state | filter | result | reason |\n|---|---|---|---|---|")
+    for mesh, of_mesh in results.items():
+        for state in ("before", "after"):
+            groups = collections.defaultdict(list)
+            for task in TASKS:
+                kind, text = of_mesh.get((state, task), ["wrong", "not run"])
+                if kind != "processed":
+                    groups[kind, text].append(task)
+            for (kind, text), tasks in groups.items():
+                names = "all" if len(tasks) == len(TASKS) else ", ".join(tasks)
+                print(f"| {mesh} | {state} | {names} | {kind} | {text} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--points", type=int, default=0, help="only meshes of at most so many")
+    parser.add_argument("--mesh", action="append", help="only this mesh, such as camel")
+    parser.add_argument("--work", help=argparse.SUPPRESS)
+    parser.add_argument("--done", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.work:
+        work(options.work, json.loads(options.done))
+        return
+    results = {}
+    for path in sorted(glob.glob(os.path.join(os.environ["CARTAN_MESH_DIR"], "*.off"))):
+        mesh = os.path.splitext(os.path.basename(path))[0]
+        with open(path, encoding="ascii", errors="replace") as file:
+            words = [word for line in file.read(2000).splitlines()
+                     for word in line.split("#")[0].split()]
+        numbers = [int(word) for word in words if word.lstrip("-").isdigit()]
+        if (options.mesh and mesh not in options.mesh) or (
+                options.points and numbers and numbers[0] > options.points):
+            continue
+        results[mesh] = watch(path)
+        count = collections.Counter(result[0] for result in results[mesh].values())
+        print(f"{mesh}: {dict(count)}", file=sys.stderr, flush=True)
+    print_tables(results)
+    after = [result[0] for of_mesh in results.values() for key, result in of_mesh.items()
+             if key[0] == "after"]
+    print(f"\n{len(results)} meshes; after preparation {after.count('processed')} of "
+          f"{len(after)} runs processed, {after.count('refused')} refused, "
+          f"{after.count('wrong')} wrong")
+
+
+if __name__ == "__main__":
+    main()
