@@ -2,6 +2,7 @@
 #include "Bridge/HandleArrays.h"
 
 #include "Bridge/PointArrays.h"
+#include "Kernel/Base/CountingSort.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkDataArray.h"
@@ -28,30 +29,22 @@ void GroupPoints(Handles& handles)
       handles.Ids.insert(std::upper_bound(handles.Ids.begin(), handles.Ids.end(), handle), handle);
     }
   }
-  handles.Offsets.assign(handles.Ids.size() + 1, 0);
   const auto place = [&handles](int handle) {
     return std::lower_bound(handles.Ids.begin(), handles.Ids.end(), handle) - handles.Ids.begin();
   };
-  for (const int handle : handles.OfVertex)
-  {
-    if (handle > 0)
+  CountingSort(
+    handles.Ids.size(),
+    [&](const auto& visit)
     {
-      ++handles.Offsets[place(handle) + 1];
-    }
-  }
-  for (std::size_t i = 0; i < handles.Ids.size(); ++i)
-  {
-    handles.Offsets[i + 1] += handles.Offsets[i];
-  }
-  handles.Points.resize(handles.Offsets.back());
-  std::vector<int> next(handles.Offsets.begin(), handles.Offsets.end() - 1);
-  for (std::size_t v = 0; v < handles.OfVertex.size(); ++v)
-  {
-    if (handles.OfVertex[v] > 0)
-    {
-      handles.Points[next[place(handles.OfVertex[v])]++] = static_cast<int>(v);
-    }
-  }
+      for (std::size_t v = 0; v < handles.OfVertex.size(); ++v)
+      {
+        if (handles.OfVertex[v] > 0)
+        {
+          visit(place(handles.OfVertex[v]), static_cast<int>(v));
+        }
+      }
+    },
+    handles.Offsets, handles.Points);
 }
 }
 

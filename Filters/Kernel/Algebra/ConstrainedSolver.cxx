@@ -2,6 +2,7 @@
 #include "Algebra/ConstrainedSolver.h"
 
 #include "Base/Bytes.h"
+#include "Base/FloodFill.h"
 
 #include <algorithm>
 #include <new>
@@ -16,30 +17,26 @@ bool GatherPart(const SparseMatrix& matrix, const std::vector<char>& isFixed,
   const Eigen::VectorXd& stiffness, int seed, std::vector<char>& visited, std::vector<int>& part)
 {
   bool isConstrained = false;
-  part.assign(1, seed);
-  visited[seed] = 1;
-  for (std::size_t next = 0; next < part.size(); ++next)
-  {
-    const int unknown = part[next];
-    isConstrained = isConstrained || (stiffness.size() && stiffness[unknown] > 0.0);
-    for (SparseMatrix::InnerIterator entry(matrix, unknown); entry; ++entry)
+  part = FloodFill(
+    { seed },
+    [&](int unknown)
     {
-      const int other = static_cast<int>(entry.index());
-      if (entry.value() == 0.0 || other == unknown)
+      isConstrained = isConstrained || isFixed[unknown];
+      const bool isNew = !isFixed[unknown] && !visited[unknown];
+      visited[unknown] = 1;
+      return isNew;
+    },
+    [&](int unknown, const auto& reach)
+    {
+      isConstrained = isConstrained || (stiffness.size() && stiffness[unknown] > 0.0);
+      for (SparseMatrix::InnerIterator entry(matrix, unknown); entry; ++entry)
       {
-        continue;
+        if (entry.value() != 0.0)
+        {
+          reach(static_cast<int>(entry.index()));
+        }
       }
-      if (isFixed[other])
-      {
-        isConstrained = true;
-      }
-      else if (!visited[other])
-      {
-        visited[other] = 1;
-        part.push_back(other);
-      }
-    }
-  }
+    });
   return isConstrained;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Base/Bytes.h"
+#include "Base/CountingSort.h"
 #include "Base/ExecutionContext.h"
 #include "Base/Types.h"
 
@@ -35,24 +36,19 @@ struct SparseRows
   SparseRows Transposed(int numberOfColumns) const
   {
     SparseRows transposed;
-    transposed.Offsets.assign(static_cast<std::size_t>(numberOfColumns) + 1, 0);
-    for (const Entry& entry : this->Entries)
-    {
-      ++transposed.Offsets[entry.Column + 1];
-    }
-    for (int column = 0; column < numberOfColumns; ++column)
-    {
-      transposed.Offsets[column + 1] += transposed.Offsets[column];
-    }
-    transposed.Entries.resize(this->Entries.size());
-    std::vector<std::size_t> next(transposed.Offsets.begin(), transposed.Offsets.end() - 1);
-    for (int row = 0; row < this->Count(); ++row)
-    {
-      for (const Entry* entry = this->Begin(row); entry != this->End(row); ++entry)
+    CountingSort(
+      numberOfColumns,
+      [this](const auto& visit)
       {
-        transposed.Entries[next[entry->Column]++] = { row, entry->Coefficient };
-      }
-    }
+        for (int row = 0; row < this->Count(); ++row)
+        {
+          for (const Entry* entry = this->Begin(row); entry != this->End(row); ++entry)
+          {
+            visit(entry->Column, Entry{ row, entry->Coefficient });
+          }
+        }
+      },
+      transposed.Offsets, transposed.Entries);
     return transposed;
   }
 };

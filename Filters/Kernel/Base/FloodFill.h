@@ -1,35 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace cartan
 {
-/// Visits everything that `seeds` reach, once each, in no order to rely on.
+/// Visits everything that `seeds` reach, once each, and returns it: breadth first,
+/// that is in the order of the steps from the nearest seed, the seeds before all.
 ///
 /// `enter(i)` marks i as visited and returns whether it was not yet, and may be
 /// entered; it is asked about the seeds too. `neighbors(i, reach)` calls reach(j)
 /// for each neighbor j of i. O(visited + their neighbors).
 template <typename Enter, typename Neighbors>
-void FloodFill(const std::vector<int>& seeds, const Enter& enter, const Neighbors& neighbors)
+std::vector<int> FloodFill(
+  const std::vector<int>& seeds, const Enter& enter, const Neighbors& neighbors)
 {
-  std::vector<int> stack;
-  const auto reach = [&stack, &enter](int i)
+  std::vector<int> visited;
+  const auto reach = [&visited, &enter](int i)
   {
     if (enter(i))
     {
-      stack.push_back(i);
+      visited.push_back(i);
     }
   };
   for (const int seed : seeds)
   {
     reach(seed);
   }
-  while (!stack.empty())
+  for (std::size_t next = 0; next < visited.size(); ++next)
   {
-    const int i = stack.back();
-    stack.pop_back();
+    const int i = visited[next];
     neighbors(i, reach);
   }
+  return visited;
 }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/GradientSystem.h"
 
+#include "Base/FloodFill.h"
 #include "Differential/Laplacian.h"
 #include "Mesh/TriangleShape.h"
 
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cartan
 {
@@ -31,40 +33,39 @@ UnknownPart GatherPart(const TriangleMesh& mesh, const GradientConstraints& cons
   const Eigen::VectorXd& softPositions, int seed, std::vector<char>& isVisited)
 {
   UnknownPart part;
-  part.Vertices.push_back(seed);
-  isVisited[seed] = 1;
-  for (std::size_t i = 0; i < part.Vertices.size(); ++i)
+  const auto seeHeld = [&](int v)
   {
-    const int v = part.Vertices[i];
-    part.IsTransformHeld = part.IsTransformHeld || constraints.IsGiven[v];
-    if (softPositions[v] > 0.0)
-    {
-      part.Held.push_back(v);
-    }
+    part.Held.push_back(v);
     for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
-      const int w = mesh.Neighbor(d);
-      if (isVisited[w])
+      if (!constraints.IsUnknown[mesh.Neighbor(d)])
       {
-        continue;
-      }
-      if (constraints.IsUnknown[w])
-      {
-        isVisited[w] = 1;
-        part.Vertices.push_back(w);
-        continue;
-      }
-      part.IsTransformHeld = part.IsTransformHeld || constraints.IsGiven[w];
-      part.Held.push_back(w);
-      for (int e = mesh.RingBegin(w); e < mesh.RingEnd(w); ++e)
-      {
-        if (!constraints.IsUnknown[mesh.Neighbor(e)])
-        {
-          part.Held.push_back(mesh.Neighbor(e));
-        }
+        part.Held.push_back(mesh.Neighbor(d));
       }
     }
-  }
+  };
+  part.Vertices = FloodFill(
+    { seed },
+    [&](int v)
+    {
+      part.IsTransformHeld = part.IsTransformHeld || constraints.IsGiven[v];
+      if (!constraints.IsUnknown[v])
+      {
+        seeHeld(v);
+      }
+      return constraints.IsUnknown[v] && !std::exchange(isVisited[v], 1);
+    },
+    [&](int v, const auto& reach)
+    {
+      if (softPositions[v] > 0.0)
+      {
+        part.Held.push_back(v);
+      }
+      for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+      {
+        reach(mesh.Neighbor(d));
+      }
+    });
   return part;
 }
 

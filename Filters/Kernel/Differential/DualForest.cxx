@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/DualForest.h"
 
+#include "Base/CountingSort.h"
 #include "Base/DisjointSets.h"
 
 #include <algorithm>
@@ -14,21 +15,18 @@ namespace
 struct Arcs
 {
   Arcs(const HingeTopology& topology, const std::vector<int>& hinges)
-    : Offsets(topology.NumberOfTriangles() + 1, 0)
-    , Hinges(2 * hinges.size())
   {
-    for (const int h : hinges)
-    {
-      ++this->Offsets[topology.Hinges[h].Left + 1];
-      ++this->Offsets[topology.Hinges[h].Right + 1];
-    }
-    std::partial_sum(this->Offsets.begin(), this->Offsets.end(), this->Offsets.begin());
-    std::vector<int> next(this->Offsets.begin(), this->Offsets.end() - 1);
-    for (const int h : hinges)
-    {
-      this->Hinges[next[topology.Hinges[h].Left]++] = h;
-      this->Hinges[next[topology.Hinges[h].Right]++] = h;
-    }
+    CountingSort(
+      topology.NumberOfTriangles(),
+      [&](const auto& visit)
+      {
+        for (const int h : hinges)
+        {
+          visit(topology.Hinges[h].Left, h);
+          visit(topology.Hinges[h].Right, h);
+        }
+      },
+      this->Offsets, this->Hinges);
   }
 
   std::vector<int> Offsets; // #T + 1
@@ -48,9 +46,7 @@ void Walk(
       const int h = arcs.Hinges[i];
       if (h != step.Hinge)
       {
-        const Hinge& hinge = topology.Hinges[h];
-        const int child = hinge.Left == step.Triangle ? hinge.Right : hinge.Left;
-        steps.push_back({ child, step.Triangle, h });
+        steps.push_back({ topology.Hinges[h].OtherTriangle(step.Triangle), step.Triangle, h });
       }
     }
   }

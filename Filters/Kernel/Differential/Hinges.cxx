@@ -3,11 +3,14 @@
 
 #include "Base/Constants.h"
 #include "Base/DisjointSets.h"
+#include "Base/FloodFill.h"
 #include "Mesh/TriangleShape.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace cartan
 {
@@ -36,6 +39,47 @@ Triangles CornerHinges(const HingeTopology& topology)
     cornerHinges(hinge.Right, hinge.RightCorner) = h;
   }
   return cornerHinges;
+}
+
+/// Writes the unit normals of the triangles that have an area, and returns those.
+std::vector<int> FindNormals(const HingeTopology& topology, const Points& points, Points& normals,
+  std::vector<char>* isDegenerate)
+{
+  std::vector<int> withArea;
+  for (int t = 0; t < topology.NumberOfTriangles(); ++t)
+  {
+    const Eigen::Vector3d ab = EdgeVector(topology, points, t, 0);
+    const Eigen::Vector3d bc = EdgeVector(topology, points, t, 1);
+    const Eigen::Vector3d ca = EdgeVector(topology, points, t, 2);
+    const Eigen::Vector3d normal = ca.cross(ab);
+    if (HasArea(normal.norm(), std::max({ ab.squaredNorm(), bc.squaredNorm(), ca.squaredNorm() })))
+    {
+      normals.row(t) = normal.stableNormalized().transpose();
+      withArea.push_back(t);
+    }
+    else if (isDegenerate)
+    {
+      (*isDegenerate)[t] = 1;
+    }
+  }
+  return withArea;
+}
+
+/// The normal of a neighbor, for a triangle without area: the part of it that is
+/// perpendicular to the triangle's longest edge; any such direction where none is left.
+Eigen::Vector3d BorrowedNormal(
+  const HingeTopology& topology, const Points& points, int t, const Eigen::Vector3d& neighbor)
+{
+  Eigen::Vector3d longest = EdgeVector(topology, points, t, 0);
+  for (const int corner : { 1, 2 })
+  {
+    const Eigen::Vector3d edge = EdgeVector(topology, points, t, corner);
+    longest = edge.squaredNorm() > longest.squaredNorm() ? edge : longest;
+  }
+  longest.stableNormalize();
+  const Eigen::Vector3d normal = neighbor - longest * longest.dot(neighbor);
+  // Parallel but for rounding.
+  return normal.norm() > 1e-6 ? normal.normalized() : longest.unitOrthogonal();
 }
 
 /// #V.
@@ -160,72 +204,44 @@ Points HingeNormals(
 {
   const int count = topology.NumberOfTriangles();
   Points normals = Points::Zero(count, 3);
-  std::vector<char> isKnown(count, 0);
-  std::vector<int> queue;
-  for (int t = 0; t < count; ++t)
-  {
-    const Eigen::Vector3d ab = EdgeVector(topology, points, t, 0);
-    const Eigen::Vector3d bc = EdgeVector(topology, points, t, 1);
-    const Eigen::Vector3d ca = EdgeVector(topology, points, t, 2);
-    const Eigen::Vector3d normal = ca.cross(ab);
-    isKnown[t] =
-      HasArea(normal.norm(), std::max({ ab.squaredNorm(), bc.squaredNorm(), ca.squaredNorm() }));
-    if (isKnown[t])
-    {
-      normals.row(t) = normal.stableNormalized().transpose();
-      queue.push_back(t);
-    }
-    else if (isDegenerate)
-    {
-      (*isDegenerate)[t] = 1;
-    }
-  }
-  if (static_cast<int>(queue.size()) == count)
+  const std::vector<int> withArea = FindNormals(topology, points, normals, isDegenerate);
+  if (static_cast<int>(withArea.size()) == count)
   {
     return normals;
   }
-
-  // Breadth first from the triangles that have a normal, then from each that
-  // none of them reaches.
   const Triangles cornerHinges = CornerHinges(topology);
-  const auto give = [&](int t, const Eigen::Vector3d& neighbor)
+  std::vector<char> isKnown(count, 0);
+  const auto spread = [&](const std::vector<int>& seeds)
   {
-    Eigen::Vector3d longest = EdgeVector(topology, points, t, 0);
-    for (const int corner : { 1, 2 })
-    {
-      const Eigen::Vector3d edge = EdgeVector(topology, points, t, corner);
-      longest = edge.squaredNorm() > longest.squaredNorm() ? edge : longest;
-    }
-    longest.stableNormalize();
-    Eigen::Vector3d normal = neighbor - longest * longest.dot(neighbor);
-    // Parallel but for rounding.
-    normal = normal.norm() > 1e-6 ? normal.normalized() : longest.unitOrthogonal();
-    normals.row(t) = normal.transpose();
-    isKnown[t] = 1;
-    queue.push_back(t);
-  };
-  std::size_t next = 0;
-  for (int seed = 0; seed <= count; ++seed)
-  {
-    for (; next < queue.size(); ++next)
-    {
-      for (int corner = 0; corner < 3; ++corner)
+    FloodFill(
+      seeds, [&isKnown](int t) { return !std::exchange(isKnown[t], 1); },
+      [&](int t, const auto& reach)
       {
-        const int h = cornerHinges(queue[next], corner);
-        if (h >= 0)
+        for (int corner = 0; corner < 3; ++corner)
         {
-          const Hinge& hinge = topology.Hinges[h];
-          const int other = hinge.Left == queue[next] ? hinge.Right : hinge.Left;
+          const int h = cornerHinges(t, corner);
+          if (h < 0)
+          {
+            continue;
+          }
+          const int other = topology.Hinges[h].OtherTriangle(t);
           if (!isKnown[other])
           {
-            give(other, normals.row(queue[next]));
+            normals.row(other) =
+              BorrowedNormal(topology, points, other, normals.row(t)).transpose();
+            reach(other);
           }
         }
-      }
-    }
-    if (seed < count && !isKnown[seed])
+      });
+  };
+  spread(withArea);
+  // Parts that none of them reaches have any normal.
+  for (int t = 0; t < count; ++t)
+  {
+    if (!isKnown[t])
     {
-      give(seed, Eigen::Vector3d::Zero());
+      normals.row(t) = BorrowedNormal(topology, points, t, Eigen::Vector3d::Zero()).transpose();
+      spread({ t });
     }
   }
   return normals;

@@ -22,6 +22,11 @@ struct Hinge
   int Right;
   int RightCorner;
   int Edge;
+
+  int OtherTriangle(int triangle) const
+  {
+    return this->Left == triangle ? this->Right : this->Left;
+  }
 };
 
 /// Adjacency of triangles, edges and hinges. Each edge occurs once. A hinge is

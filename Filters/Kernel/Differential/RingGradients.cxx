@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/RingGradients.h"
 
+#include "Mesh/GrowByRings.h"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -146,13 +148,37 @@ int RingGradients::AddGivenRow(int vertex)
   return this->RowOfVertex[vertex];
 }
 
+/// With u_k = v_k - v_0 and the sum over k of V~_i V_i^T written out, a
+/// neighbor k has (V_i V_i^T)^-1 (u_k - u_i / |N|) and i itself
+/// (V_i V_i^T)^-1 u_i, because the u_k of the neighbors sum to zero and the
+/// deformed mean is moved by every neighbor.
+RingGradients::Row3 RingGradients::RowOfRing(
+  const TriangleMesh& mesh, const Points& rest, int v, Eigen::Vector3d& normal) const
+{
+  Row3 row;
+  const Eigen::Matrix3d moments = RingMoments(mesh, rest, v);
+  const RingShape shape = ShapeOf(moments);
+  if (shape == RingShape::Singular || mesh.Valence(v) < 3)
+  {
+    return row;
+  }
+  const Eigen::Matrix3d inverse =
+    shape == RingShape::Flat ? InverseInPlane(moments, normal) : Eigen::Matrix3d(moments.inverse());
+  const Eigen::Vector3d mean = MeanOfNeighbors(mesh, rest, v);
+  const Eigen::Vector3d own = inverse * (rest.row(v).transpose() - mean);
+  row.push_back({ this->PositionColumns[v], own });
+  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  {
+    const int w = mesh.Neighbor(d);
+    row.push_back({ this->PositionColumns[w],
+      inverse * (rest.row(w).transpose() - mean) - own / mesh.Valence(v) });
+  }
+  return row;
+}
+
 void RingGradients::BuildRows(const TriangleMesh& mesh, const Points& rest,
   const GradientConstraints& constraints, const ExecutionContext& context)
 {
-  // With u_k = v_k - v_0 and the sum over k of V~_i V_i^T written out, a
-  // neighbor k has (V_i V_i^T)^-1 (u_k - u_i / |N|) and i itself
-  // (V_i V_i^T)^-1 u_i, because the u_k of the neighbors sum to zero and the
-  // deformed mean is moved by every neighbor.
   std::vector<Row3> rows(this->Active.size());
   std::vector<Eigen::Vector3d> normals(this->Active.size(), Eigen::Vector3d::Zero());
   context.For(static_cast<int>(this->Active.size()),
@@ -160,24 +186,9 @@ void RingGradients::BuildRows(const TriangleMesh& mesh, const Points& rest,
     {
       for (int a = begin; a < end; ++a)
       {
-        const int v = this->Active[a];
-        const Eigen::Matrix3d moments = RingMoments(mesh, rest, v);
-        const RingShape shape = ShapeOf(moments);
-        if (constraints.IsGiven[v] || shape == RingShape::Singular || mesh.Valence(v) < 3)
+        if (!constraints.IsGiven[this->Active[a]])
         {
-          continue;
-        }
-        const Eigen::Matrix3d inverse = shape == RingShape::Flat
-          ? InverseInPlane(moments, normals[a])
-          : Eigen::Matrix3d(moments.inverse());
-        const Eigen::Vector3d mean = MeanOfNeighbors(mesh, rest, v);
-        const Eigen::Vector3d own = inverse * (rest.row(v).transpose() - mean);
-        rows[a].push_back({ this->PositionColumns[v], own });
-        for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-        {
-          const int w = mesh.Neighbor(d);
-          rows[a].push_back({ this->PositionColumns[w],
-            inverse * (rest.row(w).transpose() - mean) - own / mesh.Valence(v) });
+          rows[a] = this->RowOfRing(mesh, rest, this->Active[a], normals[a]);
         }
       }
     });
@@ -308,36 +319,16 @@ void RingGradients::FindRestValues(const Points& rest)
 void RingGradients::FindCoherentRows(
   const TriangleMesh& mesh, const GradientConstraints& constraints, int rings)
 {
-  std::vector<int> seenFrom(mesh.NumberOfVertices(), -1);
-  std::vector<int> reached;
+  RingGrowth growth(mesh);
   const int numberOfRows = this->Gradients.Count();
   this->Coherent.resize(numberOfRows);
   for (int row = 0; row < numberOfRows; ++row)
   {
-    const int v = this->VertexOfRow[row];
     if (this->IsGivenRow[row])
     {
       continue;
     }
-    reached.assign(1, v);
-    seenFrom[v] = v;
-    std::size_t begin = 0;
-    for (int ring = 0; ring < rings; ++ring)
-    {
-      const std::size_t end = reached.size();
-      for (; begin < end; ++begin)
-      {
-        for (int d = mesh.RingBegin(reached[begin]); d < mesh.RingEnd(reached[begin]); ++d)
-        {
-          const int w = mesh.Neighbor(d);
-          if (seenFrom[w] != v)
-          {
-            seenFrom[w] = v;
-            reached.push_back(w);
-          }
-        }
-      }
-    }
+    const std::vector<int>& reached = growth.Grow({ this->VertexOfRow[row] }, rings);
     this->Coherent[row].reserve(reached.size() - 1);
     for (std::size_t i = 1; i < reached.size(); ++i)
     {

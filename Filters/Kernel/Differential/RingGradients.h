@@ -129,6 +129,10 @@ private:
   void NumberPositions(const TriangleMesh& mesh, const GradientConstraints& constraints);
   void BuildRows(const TriangleMesh& mesh, const Points& rest,
     const GradientConstraints& constraints, const ExecutionContext& context);
+  /// Empty where the positions of the ring make no gradient; `normal` is written
+  /// where the ring is flat.
+  Row3 RowOfRing(
+    const TriangleMesh& mesh, const Points& rest, int v, Eigen::Vector3d& normal) const;
   void BorrowRows(
     const TriangleMesh& mesh, const GradientConstraints& constraints, std::vector<int> borrowing);
   Row3 MeanRow(const std::vector<int>& lenders) const;

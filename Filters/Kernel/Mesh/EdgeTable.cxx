@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/EdgeTable.h"
 
+#include "Base/CountingSort.h"
 #include "Base/Error.h"
 
 #include <algorithm>
@@ -25,22 +26,18 @@ EdgeTable::EdgeTable(int numberOfVertices, const Triangles& triangles)
   const auto larger = [&triangles](int side)
   { return std::max(SideFrom(triangles, side), SideTo(triangles, side)); };
 
-  // A counting sort by the smaller end, then each bucket by the larger one.
-  std::vector<int> first(numberOfVertices + 1, 0);
-  for (int side = 0; side < count; ++side)
-  {
-    ++first[smaller(side) + 1];
-  }
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
-    first[v + 1] += first[v];
-  }
-  this->Sides.resize(count);
-  std::vector<int> cursor(first.begin(), first.end() - 1);
-  for (int side = 0; side < count; ++side)
-  {
-    this->Sides[cursor[smaller(side)]++] = side;
-  }
+  // By the smaller end, then those of each end by the larger one.
+  std::vector<int> first;
+  CountingSort(
+    numberOfVertices,
+    [&](const auto& visit)
+    {
+      for (int side = 0; side < count; ++side)
+      {
+        visit(smaller(side), side);
+      }
+    },
+    first, this->Sides);
   for (int v = 0; v < numberOfVertices; ++v)
   {
     std::stable_sort(this->Sides.begin() + first[v], this->Sides.begin() + first[v + 1],

@@ -3,35 +3,41 @@
 
 namespace cartan
 {
-std::vector<int> GrowByRings(const TriangleMesh& mesh, const std::vector<int>& seeds, int rings)
+void RingGrowth::Reach(int v)
 {
-  std::vector<char> isReached(mesh.NumberOfVertices(), 0);
-  std::vector<int> reached;
-  const auto reach = [&isReached, &reached](int v)
+  if (this->LastGrowth[v] != this->Growth)
   {
-    if (!isReached[v])
-    {
-      isReached[v] = 1;
-      reached.push_back(v);
-    }
-  };
+    this->LastGrowth[v] = this->Growth;
+    this->Reached.push_back(v);
+  }
+}
+
+const std::vector<int>& RingGrowth::Grow(const std::vector<int>& seeds, int rings)
+{
+  ++this->Growth;
+  this->Reached.clear();
   for (const int seed : seeds)
   {
-    reach(seed);
+    this->Reach(seed);
   }
   // A ring begins where the one before it ended.
   std::size_t next = 0;
-  for (int ring = 0; ring < rings && next < reached.size(); ++ring)
+  for (int ring = 0; ring < rings && next < this->Reached.size(); ++ring)
   {
-    for (const std::size_t end = reached.size(); next < end; ++next)
+    for (const std::size_t end = this->Reached.size(); next < end; ++next)
     {
-      const int v = reached[next];
-      for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+      const int v = this->Reached[next];
+      for (int d = this->Mesh.RingBegin(v); d < this->Mesh.RingEnd(v); ++d)
       {
-        reach(mesh.Neighbor(d));
+        this->Reach(this->Mesh.Neighbor(d));
       }
     }
   }
-  return reached;
+  return this->Reached;
+}
+
+std::vector<int> GrowByRings(const TriangleMesh& mesh, const std::vector<int>& seeds, int rings)
+{
+  return RingGrowth(mesh).Grow(seeds, rings);
 }
 }

@@ -3,12 +3,14 @@
 
 #include "Base/Constants.h"
 #include "Base/DisjointSets.h"
+#include "Base/FloodFill.h"
 #include "Mesh/EdgeTable.h"
 #include "Mesh/Geometry.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace cartan
 {
@@ -158,7 +160,6 @@ ConsistentOrientation OrientConsistently(
   ConsistentOrientation result;
   result.IsReversed.assign(size, 0);
   std::vector<char> isSeen(size, 0);
-  std::vector<int> patch;
   for (int seed = 0; seed < size; ++seed)
   {
     if (isSeen[seed])
@@ -168,25 +169,23 @@ ConsistentOrientation OrientConsistently(
     ++result.NumberOfPatches;
     // In the order of distance from the seed: where the fronts of a one-sided
     // patch meet, the contradictions form a short cut.
-    patch.assign(1, seed);
-    isSeen[seed] = 1;
     double balance = 0.0; // area that keeps its side minus area turned over
-    for (std::size_t i = 0; i < patch.size(); ++i)
-    {
-      const int t = patch[i];
-      balance += result.IsReversed[t] ? -areas[t] : areas[t];
-      for (int side = 3 * t; side < 3 * t + 3; ++side)
+    const std::vector<int> patch = FloodFill(
+      { seed }, [&isSeen](int t) { return !std::exchange(isSeen[t], 1); },
+      [&](int t, const auto& reach)
       {
-        const int other = across[side];
-        if (other >= 0 && !isSeen[other / 3])
+        balance += result.IsReversed[t] ? -areas[t] : areas[t];
+        for (int side = 3 * t; side < 3 * t + 3; ++side)
         {
-          const bool disagrees = SideFrom(triangles, side) == SideFrom(triangles, other);
-          result.IsReversed[other / 3] = static_cast<char>(result.IsReversed[t] != disagrees);
-          isSeen[other / 3] = 1;
-          patch.push_back(other / 3);
+          const int other = across[side];
+          if (other >= 0 && !isSeen[other / 3])
+          {
+            const bool disagrees = SideFrom(triangles, side) == SideFrom(triangles, other);
+            result.IsReversed[other / 3] = static_cast<char>(result.IsReversed[t] != disagrees);
+            reach(other / 3);
+          }
         }
-      }
-    }
+      });
     for (const int t : patch)
     {
       result.IsReversed[t] = static_cast<char>(result.IsReversed[t] != (balance < 0.0));
