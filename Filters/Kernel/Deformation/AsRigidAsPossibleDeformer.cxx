@@ -7,7 +7,6 @@
 #include "Deformation/ShapePreservingDeformer.h"
 #include "Mesh/Geometry.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace cartan
@@ -37,21 +36,36 @@ AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, Rigi
   }
   this->System = this->Guess->GetPositionSystem();
   this->MovingHandles = MovingHandleOfVertices(this->Problem);
-  this->BuildCells();
+  this->Cells = RigidCells(
+    this->Problem, *this->System, *this->Guess->GetPositionWeights(), this->MovingHandles);
   if (energy == RigidityEnergy::SpokesAndRims)
   {
-    this->BuildRims();
+    this->Rims = this->Cells.FindRims(this->Problem);
   }
   if (energy == RigidityEnergy::SmoothedRotations)
   {
-    this->BuildColors();
+    this->Colors = this->Cells.Color();
     const Eigen::VectorXd areas =
       MixedVoronoiAreas(*this->Problem.Mesh, *this->Problem.Rest, context);
     for (int i = 0; i < this->System->NumberOfUnknowns(); ++i)
     {
-      this->FreeArea += areas[this->Vertices[i]];
+      this->FreeArea += areas[this->Cells.Vertices[i]];
     }
   }
+  for (int cell = 0; cell < this->Cells.Count; ++cell)
+  {
+    this->HoldsRotation.push_back(
+      !this->Problem.ConstrainPositions && this->MovingHandles[this->Cells.Vertices[cell]] >= 0);
+  }
+  this->Rest.resize(this->Cells.NumberOfSites(), 3);
+  for (int i = 0; i < this->Cells.NumberOfSites(); ++i)
+  {
+    this->Rest.row(i) = this->Problem.Rest->row(this->Cells.Vertices[i]);
+  }
+  this->Current = this->Rest;
+  this->Rotations = Identities(this->Cells.NumberOfSites());
+  this->CellEnergies.setZero(this->Cells.Count);
+  this->Residual.resize(this->System->NumberOfUnknowns(), 3);
   context.Report(1.0);
 }
 
@@ -59,161 +73,19 @@ AsRigidAsPossibleDeformer::~AsRigidAsPossibleDeformer() = default;
 
 std::size_t AsRigidAsPossibleDeformer::GetBytes() const
 {
-  return this->GetBaseBytes() + this->Guess->GetBytes() +
-    TotalBytes(this->Vertices, this->Unknowns, this->Cells, this->HoldsRotation, this->SpokeOffsets,
-      this->Spokes, this->Rims, this->Colors, this->MovingHandles, this->Rest, this->Current,
-      this->Rotations, this->CellEnergies, this->Residual, this->Energies);
+  return this->GetBaseBytes() + this->Guess->GetBytes() + this->Cells.GetBytes() +
+    TotalBytes(this->Rims, this->Colors, this->HoldsRotation, this->MovingHandles, this->Rest,
+      this->Current, this->Rotations, this->CellEnergies, this->Residual, this->Energies);
 }
 
 Eigen::VectorXd AsRigidAsPossibleDeformer::GetVertexEnergies() const
 {
   Eigen::VectorXd energies = Eigen::VectorXd::Zero(this->Problem.Mesh->NumberOfVertices());
-  for (int cell = 0; cell < this->CellCount; ++cell)
+  for (int cell = 0; cell < this->Cells.Count; ++cell)
   {
-    energies[this->Vertices[cell]] = this->CellEnergies[cell];
+    energies[this->Cells.Vertices[cell]] = this->CellEnergies[cell];
   }
   return energies;
-}
-
-void AsRigidAsPossibleDeformer::BuildCells()
-{
-  const TriangleMesh& mesh = *this->Problem.Mesh;
-  const Eigen::VectorXd& weights = *this->Guess->GetPositionWeights();
-  std::vector<int> site(mesh.NumberOfVertices(), -1);
-  const auto number = [&](int v)
-  {
-    if (site[v] < 0)
-    {
-      site[v] = static_cast<int>(this->Vertices.size());
-      this->Vertices.push_back(v);
-    }
-    return site[v];
-  };
-  // Breadth first, so that a cell's neighbors are near it in memory: an order
-  // of vertices without that makes a step half as fast.
-  std::vector<int> unknown(mesh.NumberOfVertices(), -1);
-  for (int i = 0; i < this->System->NumberOfUnknowns(); ++i)
-  {
-    unknown[this->System->Vertex(i)] = i;
-  }
-  this->Cells.resize(this->System->NumberOfUnknowns());
-  for (int i = 0; i < this->System->NumberOfUnknowns(); ++i)
-  {
-    std::size_t next = this->Vertices.size();
-    for (number(this->System->Vertex(i)); next < this->Vertices.size(); ++next)
-    {
-      const int v = this->Vertices[next];
-      this->Cells[unknown[v]] = static_cast<int>(this->Unknowns.size());
-      this->Unknowns.push_back(unknown[v]);
-      for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-      {
-        if (unknown[mesh.Neighbor(d)] >= 0)
-        {
-          number(mesh.Neighbor(d));
-        }
-      }
-    }
-  }
-  for (int i = this->System->NumberOfUnknowns(); i < this->System->NumberOfLocals(); ++i)
-  {
-    number(this->System->Vertex(i));
-  }
-  this->ActiveCount = this->System->NumberOfLocals();
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    if (this->MovingHandles[v] >= 0 && mesh.IsUsed(v))
-    {
-      number(v);
-      for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-      {
-        number(mesh.Neighbor(d));
-      }
-    }
-  }
-  this->CellCount = static_cast<int>(this->Vertices.size());
-  this->SpokeOffsets.push_back(0);
-  for (int cell = 0; cell < this->CellCount; ++cell)
-  {
-    const int v = this->Vertices[cell];
-    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-    {
-      this->Spokes.push_back({ number(mesh.Neighbor(d)), weights[d] });
-    }
-    this->SpokeOffsets.push_back(static_cast<int>(this->Spokes.size()));
-    this->HoldsRotation.push_back(!this->Problem.ConstrainPositions && this->MovingHandles[v] >= 0);
-  }
-  const auto numberOfSites = static_cast<Eigen::Index>(this->Vertices.size());
-  this->Rest.resize(numberOfSites, 3);
-  for (Eigen::Index i = 0; i < numberOfSites; ++i)
-  {
-    this->Rest.row(i) = this->Problem.Rest->row(this->Vertices[i]);
-  }
-  this->Current = this->Rest;
-  this->Rotations = Identities(numberOfSites);
-  this->CellEnergies.setZero(this->CellCount);
-  this->Residual.resize(this->System->NumberOfUnknowns(), 3);
-}
-
-void AsRigidAsPossibleDeformer::BuildRims()
-{
-  const TriangleMesh& mesh = *this->Problem.Mesh;
-  const Points cornerWeights =
-    CornerWeights(mesh, *this->Problem.Rest, this->Problem.PositionWeights);
-  const auto weightOpposite = [&](int triangle, int v)
-  {
-    const auto corners = mesh.GetTriangles().row(triangle);
-    return cornerWeights(triangle, corners[0] == v ? 0 : corners[1] == v ? 1 : 2);
-  };
-  // Sites of a ring's vertices are its cell's spokes: the left one is the next.
-  for (int cell = 0; cell < this->CellCount; ++cell)
-  {
-    const int v = this->Vertices[cell];
-    const int begin = this->SpokeOffsets[cell];
-    const int count = this->SpokeOffsets[cell + 1] - begin;
-    for (int k = 0; k < count; ++k)
-    {
-      const int d = mesh.RingBegin(v) + k;
-      const int before = (k + count - 1) % count;
-      Rim rim = { -1, -1, 0.0, 0.0 };
-      if (mesh.LeftTriangle(d) >= 0)
-      {
-        rim.Left = this->Spokes[begin + (k + 1) % count].Neighbor;
-        rim.LeftWeight = weightOpposite(mesh.LeftTriangle(d), mesh.Opposite(d));
-        rim.RimWeight = weightOpposite(mesh.LeftTriangle(d), v);
-      }
-      if (mesh.LeftTriangle(mesh.RingBegin(v) + before) >= 0)
-      {
-        rim.Right = this->Spokes[begin + before].Neighbor;
-      }
-      this->Rims.push_back(rim);
-    }
-  }
-}
-
-void AsRigidAsPossibleDeformer::BuildColors()
-{
-  // Greedy: the smallest color that no neighbor has.
-  std::vector<int> colors(this->ActiveCount, -1);
-  std::vector<char> isTaken;
-  for (int cell = 0; cell < this->ActiveCount; ++cell)
-  {
-    isTaken.assign(this->Colors.size() + 1, 0);
-    for (int s = this->SpokeOffsets[cell]; s < this->SpokeOffsets[cell + 1]; ++s)
-    {
-      const int neighbor = this->Spokes[s].Neighbor;
-      if (neighbor < this->ActiveCount && colors[neighbor] >= 0)
-      {
-        isTaken[colors[neighbor]] = 1;
-      }
-    }
-    const auto color = std::find(isTaken.begin(), isTaken.end(), 0) - isTaken.begin();
-    colors[cell] = static_cast<int>(color);
-    if (color == static_cast<std::ptrdiff_t>(this->Colors.size()))
-    {
-      this->Colors.emplace_back();
-    }
-    this->Colors[color].push_back(cell);
-  }
 }
 
 void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
@@ -229,9 +101,9 @@ void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
   const Row rest = this->Rest.row(cell);
   const Row current = this->Current.row(cell);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (int s = this->SpokeOffsets[cell]; s < this->SpokeOffsets[cell + 1]; ++s)
+  for (int s = this->Cells.SpokeOffsets[cell]; s < this->Cells.SpokeOffsets[cell + 1]; ++s)
   {
-    const Spoke& spoke = this->Spokes[s];
+    const RigidCells::Spoke& spoke = this->Cells.Spokes[s];
     const Row edge = current - this->Current.row(spoke.Neighbor);
     const Row restEdge = spoke.Weight * (rest - this->Rest.row(spoke.Neighbor));
     covariance += edge.transpose() * restEdge;
@@ -242,12 +114,12 @@ void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
   }
   if (!this->Rims.empty())
   {
-    for (int s = this->SpokeOffsets[cell]; s < this->SpokeOffsets[cell + 1]; ++s)
+    for (int s = this->Cells.SpokeOffsets[cell]; s < this->Cells.SpokeOffsets[cell + 1]; ++s)
     {
-      const Rim& rim = this->Rims[s];
+      const RigidCells::Rim& rim = this->Rims[s];
       if (rim.Left >= 0)
       {
-        const int neighbor = this->Spokes[s].Neighbor;
+        const int neighbor = this->Cells.Spokes[s].Neighbor;
         const Row edge = this->Current.row(neighbor) - this->Current.row(rim.Left);
         const Row restEdge = rim.RimWeight * (this->Rest.row(neighbor) - this->Rest.row(rim.Left));
         covariance += edge.transpose() * restEdge;
@@ -262,7 +134,7 @@ void AsRigidAsPossibleDeformer::FitRotations(const ExecutionContext& context)
 {
   if (this->Colors.empty())
   {
-    context.For(this->ActiveCount,
+    context.For(this->Cells.ActiveCount,
       [&](int begin, int end)
       {
         for (int cell = begin; cell < end; ++cell)
@@ -274,7 +146,7 @@ void AsRigidAsPossibleDeformer::FitRotations(const ExecutionContext& context)
   }
   // Each fit sees its neighbors' rotations, so that none raises the energy;
   // those of one color see none of each other.
-  const double bending = this->Bending * this->FreeArea;
+  const double bending = this->BendingFactor();
   for (const std::vector<int>& cells : this->Colors)
   {
     context.For(static_cast<int>(cells.size()),
@@ -288,6 +160,55 @@ void AsRigidAsPossibleDeformer::FitRotations(const ExecutionContext& context)
   }
 }
 
+/// c_jk |x_j - x_k - R (p_j - p_k)|^2 of the edge from the spoke's neighbor j to
+/// the next one k.
+inline double AsRigidAsPossibleDeformer::RimEnergy(int spoke, const Eigen::Matrix3d& rotation) const
+{
+  const RigidCells::Rim& rim = this->Rims[spoke];
+  const int neighbor = this->Cells.Spokes[spoke].Neighbor;
+  return rim.RimWeight *
+    ((this->Current.row(neighbor) - this->Current.row(rim.Left)).transpose() -
+      rotation * (this->Rest.row(neighbor) - this->Rest.row(rim.Left)).transpose())
+      .squaredNorm();
+}
+
+/// How often a cell counts the bending toward a neighbor. A pair of coupled
+/// rotations counts in both its cells. Where one is held and so never evaluated
+/// again, the other counts for both.
+inline double AsRigidAsPossibleDeformer::TimesOfBending(int cell, int neighbor) const
+{
+  const int active = this->Cells.ActiveCount;
+  const int limit = cell < active ? active : this->Cells.Count;
+  return neighbor >= limit ? 2.0 : cell >= active && neighbor < active ? 0.0 : 1.0;
+}
+
+/// What a spoke of an unknown cell i adds to b - L x,
+///
+///   w_ij ((R_i + R_j) (p_i - p_j) / 2 - (x_i - x_j));
+///
+/// with rims the mean is over the cells of the corners of the triangles beside it,
+/// in which a triangle's edge is. `turned` is (R_i + R_j) (p_i - p_j).
+inline Eigen::Vector3d AsRigidAsPossibleDeformer::ResidualOfSpoke(int spoke,
+  const Eigen::Vector3d& edge, const Eigen::Vector3d& restEdge, const Eigen::Vector3d& turned) const
+{
+  const double weight = this->Cells.Spokes[spoke].Weight;
+  if (this->Rims.empty())
+  {
+    return weight * (0.5 * turned - edge);
+  }
+  const RigidCells::Rim& rim = this->Rims[spoke];
+  Eigen::Vector3d sum = weight * turned;
+  if (rim.Left >= 0)
+  {
+    sum += rim.LeftWeight * (MatrixAt(this->Rotations, rim.Left) * restEdge);
+  }
+  if (rim.Right >= 0)
+  {
+    sum += (weight - rim.LeftWeight) * (MatrixAt(this->Rotations, rim.Right) * restEdge);
+  }
+  return sum / 3.0 - weight * edge;
+}
+
 void AsRigidAsPossibleDeformer::EvaluateCell(int cell, double bending, const HandleTargets& targets)
 {
   const Row rest = this->Rest.row(cell);
@@ -299,9 +220,9 @@ void AsRigidAsPossibleDeformer::EvaluateCell(int cell, double bending, const Han
   double rimEnergy = 0.0;
   double turning = 0.0;
   Eigen::Vector3d residual = Eigen::Vector3d::Zero();
-  for (int s = this->SpokeOffsets[cell]; s < this->SpokeOffsets[cell + 1]; ++s)
+  for (int s = this->Cells.SpokeOffsets[cell]; s < this->Cells.SpokeOffsets[cell + 1]; ++s)
   {
-    const Spoke& spoke = this->Spokes[s];
+    const RigidCells::Spoke& spoke = this->Cells.Spokes[s];
     const auto other = MatrixAt(this->Rotations, spoke.Neighbor);
     const Eigen::Vector3d edge = (current - this->Current.row(spoke.Neighbor)).transpose();
     const Eigen::Vector3d restEdge = (rest - this->Rest.row(spoke.Neighbor)).transpose();
@@ -309,53 +230,27 @@ void AsRigidAsPossibleDeformer::EvaluateCell(int cell, double bending, const Han
     energy += spoke.Weight * (edge - turned).squaredNorm();
     if (bending > 0.0)
     {
-      // A pair of coupled rotations counts in both its cells. Where one is held
-      // and so never evaluated again, the other counts for both.
-      const int limit = cell < this->ActiveCount ? this->ActiveCount : this->CellCount;
-      const double times = spoke.Neighbor >= limit                        ? 2.0
-        : cell >= this->ActiveCount && spoke.Neighbor < this->ActiveCount ? 0.0
-                                                                          : 1.0;
-      turning += times * spoke.Weight * (rotation - other).squaredNorm();
+      turning += this->TimesOfBending(cell, spoke.Neighbor) * spoke.Weight *
+        (rotation - other).squaredNorm();
     }
     if (hasRims && this->Rims[s].Left >= 0)
     {
-      const Rim& rim = this->Rims[s];
-      rimEnergy += rim.RimWeight *
-        ((this->Current.row(spoke.Neighbor) - this->Current.row(rim.Left)).transpose() -
-          rotation * (this->Rest.row(spoke.Neighbor) - this->Rest.row(rim.Left)).transpose())
-          .squaredNorm();
+      rimEnergy += this->RimEnergy(s, rotation);
     }
-    if (!isUnknown)
+    if (isUnknown)
     {
-      continue;
+      residual += this->ResidualOfSpoke(s, edge, restEdge, turned + other * restEdge);
     }
-    if (!hasRims)
-    {
-      residual += spoke.Weight * (0.5 * (turned + other * restEdge) - edge);
-      continue;
-    }
-    // A triangle's edge is in three cells: those of its corners.
-    const Rim& rim = this->Rims[s];
-    Eigen::Vector3d sum = spoke.Weight * (turned + other * restEdge);
-    if (rim.Left >= 0)
-    {
-      sum += rim.LeftWeight * (MatrixAt(this->Rotations, rim.Left) * restEdge);
-    }
-    if (rim.Right >= 0)
-    {
-      sum += (spoke.Weight - rim.LeftWeight) * (MatrixAt(this->Rotations, rim.Right) * restEdge);
-    }
-    residual += sum / 3.0 - spoke.Weight * edge;
   }
   this->CellEnergies[cell] =
     hasRims ? 2.0 / 3.0 * (energy + rimEnergy) : energy + bending * turning;
   if (isUnknown)
   {
-    const int unknown = this->Unknowns[cell];
+    const int unknown = this->Cells.Unknowns[cell];
     const double squaredWeight = this->System->SquaredSoftWeight(unknown);
     if (squaredWeight > 0.0)
     {
-      const Eigen::Vector3d pull = HandleTarget(this->Problem, targets, this->Vertices[cell],
+      const Eigen::Vector3d pull = HandleTarget(this->Problem, targets, this->Cells.Vertices[cell],
                                      this->System->MovingHandle(unknown)) -
         current.transpose();
       this->CellEnergies[cell] += squaredWeight * pull.squaredNorm();
@@ -369,8 +264,8 @@ double AsRigidAsPossibleDeformer::Evaluate(
   const HandleTargets& targets, const ExecutionContext& context)
 {
   this->FitRotations(context);
-  const double bending = this->Colors.empty() ? 0.0 : this->Bending * this->FreeArea;
-  context.For(this->ActiveCount,
+  const double bending = this->BendingFactor();
+  context.For(this->Cells.ActiveCount,
     [&](int begin, int end)
     {
       for (int cell = begin; cell < end; ++cell)
@@ -400,17 +295,17 @@ void AsRigidAsPossibleDeformer::Start(
     result.Positions = HandlePositions(this->Problem, targets, this->MovingHandles);
   }
   result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());
-  for (int i = startsFromPrevious ? numberOfUnknowns : 0; i < this->CellCount; ++i)
+  for (int i = startsFromPrevious ? numberOfUnknowns : 0; i < this->Cells.Count; ++i)
   {
-    this->Current.row(i) = result.Positions.row(this->Vertices[i]);
+    this->Current.row(i) = result.Positions.row(this->Cells.Vertices[i]);
   }
-  const double bending = this->Colors.empty() ? 0.0 : this->Bending * this->FreeArea;
-  context.For(this->CellCount,
+  const double bending = this->BendingFactor();
+  context.For(this->Cells.Count,
     [&](int begin, int end)
     {
       for (int cell = begin; cell < end; ++cell)
       {
-        const int v = this->Vertices[cell];
+        const int v = this->Cells.Vertices[cell];
         auto rotation = MatrixAt(this->Rotations, cell);
         if (this->HoldsRotation[cell])
         {
@@ -424,15 +319,66 @@ void AsRigidAsPossibleDeformer::Start(
         {
           rotation.setIdentity();
         }
-        if (cell >= this->ActiveCount)
+        if (cell >= this->Cells.ActiveCount)
         {
           this->FitCell(cell, 0.0);
         }
       }
     });
-  for (int cell = this->ActiveCount; cell < this->CellCount; ++cell)
+  for (int cell = this->Cells.ActiveCount; cell < this->Cells.Count; ++cell)
   {
     this->EvaluateCell(cell, bending, targets);
+  }
+}
+
+/// L step = b - L x, in the order of the cells.
+void AsRigidAsPossibleDeformer::SolveStep(Eigen::VectorXd& step)
+{
+  const int numberOfUnknowns = this->System->NumberOfUnknowns();
+  Eigen::MatrixXd rightHandSide(numberOfUnknowns, 3);
+  // In the order of the system, whose columns lie far apart.
+  for (int i = 0; i < numberOfUnknowns; ++i)
+  {
+    rightHandSide.row(i) = this->Residual.row(this->Cells.CellOfUnknown[i]);
+  }
+  const Eigen::Map<const Eigen::MatrixXd> solution = this->System->Solve(rightHandSide);
+  step.resize(3 * numberOfUnknowns);
+  for (int i = 0; i < numberOfUnknowns; ++i)
+  {
+    step.segment<3>(3 * this->Cells.CellOfUnknown[i]) = solution.row(i);
+  }
+}
+
+/// Below this part of what all edges would cost if they vanished, energies are
+/// made of rounding.
+double AsRigidAsPossibleDeformer::NegligibleEnergy() const
+{
+  double negligible = 0.0;
+  for (int cell = 0; cell < this->Cells.Count; ++cell)
+  {
+    for (int s = this->Cells.SpokeOffsets[cell]; s < this->Cells.SpokeOffsets[cell + 1]; ++s)
+    {
+      const RigidCells::Spoke& spoke = this->Cells.Spokes[s];
+      negligible += 1e-20 * spoke.Weight *
+        (this->Rest.row(cell) - this->Rest.row(spoke.Neighbor)).squaredNorm();
+    }
+  }
+  return negligible;
+}
+
+void AsRigidAsPossibleDeformer::WriteResult(bool wantTransforms, DeformedSurface& result) const
+{
+  for (int i = 0; i < this->System->NumberOfUnknowns(); ++i)
+  {
+    result.Positions.row(this->Cells.Vertices[i]) = this->Current.row(i);
+  }
+  if (wantTransforms)
+  {
+    result.Transforms = Identities(this->Problem.Mesh->NumberOfVertices());
+    for (int cell = 0; cell < this->Cells.Count; ++cell)
+    {
+      result.Transforms.row(this->Cells.Vertices[cell]) = this->Rotations.row(cell);
+    }
   }
 }
 
@@ -443,23 +389,11 @@ void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, boo
   const int numberOfUnknowns = this->System->NumberOfUnknowns();
   Eigen::Map<Eigen::VectorXd> unknowns(this->Current.data(), 3 * numberOfUnknowns);
   AndersonAcceleration extrapolation(1e-12);
-  Eigen::MatrixXd rightHandSide(numberOfUnknowns, 3);
-  Eigen::VectorXd step(3 * numberOfUnknowns);
+  Eigen::VectorXd step;
   Eigen::VectorXd plain;
   Eigen::VectorXd next;
   Matrices rotations;
-
-  // Below this part of what all edges would cost if they vanished, energies are
-  // made of rounding.
-  double negligible = 0.0;
-  for (int cell = 0; cell < this->CellCount; ++cell)
-  {
-    for (int s = this->SpokeOffsets[cell]; s < this->SpokeOffsets[cell + 1]; ++s)
-    {
-      negligible += 1e-20 * this->Spokes[s].Weight *
-        (this->Rest.row(cell) - this->Rest.row(this->Spokes[s].Neighbor)).squaredNorm();
-    }
-  }
+  const double negligible = this->NegligibleEnergy();
   this->Energies = { this->Evaluate(targets, context) };
   this->Converged = numberOfUnknowns == 0;
   while (!this->Converged && this->GetNumberOfIterations() < this->MaximumIterations)
@@ -467,16 +401,7 @@ void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, boo
     const int iteration = this->GetNumberOfIterations();
     context.Report(0.1 + 0.85 * iteration / this->MaximumIterations);
     const double before = this->Energies.back();
-    // In the order of the system, whose columns lie far apart.
-    for (int i = 0; i < numberOfUnknowns; ++i)
-    {
-      rightHandSide.row(i) = this->Residual.row(this->Cells[i]);
-    }
-    const Eigen::Map<const Eigen::MatrixXd> solution = this->System->Solve(rightHandSide);
-    for (int i = 0; i < numberOfUnknowns; ++i)
-    {
-      step.segment<3>(3 * this->Cells[i]) = solution.row(i);
-    }
+    this->SolveStep(step);
     plain = unknowns + step;
     const bool isExtrapolated = extrapolation.Next(plain, step, next);
     unknowns = next;
@@ -500,19 +425,7 @@ void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, boo
     this->Converged = before - after <= this->Tolerance * (std::abs(after) + negligible);
   }
   this->HasPrevious = true;
-
-  for (int i = 0; i < numberOfUnknowns; ++i)
-  {
-    result.Positions.row(this->Vertices[i]) = this->Current.row(i);
-  }
-  if (wantTransforms)
-  {
-    result.Transforms = Identities(this->Problem.Mesh->NumberOfVertices());
-    for (int cell = 0; cell < this->CellCount; ++cell)
-    {
-      result.Transforms.row(this->Vertices[cell]) = this->Rotations.row(cell);
-    }
-  }
+  this->WriteResult(wantTransforms, result);
   context.Report(1.0);
 }
 }

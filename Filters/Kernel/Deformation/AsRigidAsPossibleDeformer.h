@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Deformation/FrameDeformer.h"
+#include "Deformation/RigidCells.h"
 
 #include <memory>
 #include <vector>
@@ -20,7 +21,7 @@ enum class InitialGuess
   RestShape,         ///< only the handles moved
   PreviousResult,    ///< that of the last motion; of the first, ShapePreserving
   RotationInvariant, ///< RotationInvariantDeformer
-  ShapePreserving    ///< ShapePreservingDeformer, which knows laps
+  ShapePreserving    ///< ShapePreservingDeformer, which knows full turns
 };
 
 /// Deformation that leaves the neighborhood of each vertex as rigid as the
@@ -114,30 +115,24 @@ protected:
     const ExecutionContext& context) override;
 
 private:
-  /// An edge of a cell from its center.
-  struct Spoke
-  {
-    int Neighbor; ///< site
-    double Weight;
-  };
-  /// The triangles beside a spoke.
-  struct Rim
-  {
-    int Left; ///< the site opposite to the spoke in the triangle on its left; -1: none
-    int Right;
-    double LeftWeight; ///< the left triangle's part of the spoke's weight
-    double RimWeight;  ///< and of the edge from Neighbor to Left
-  };
-
-  void BuildCells();
-  void BuildRims();
-  void BuildColors();
   void FitCell(int cell, double bending);
   void FitRotations(const ExecutionContext& context);
   double Evaluate(const HandleTargets& targets, const ExecutionContext& context);
   void EvaluateCell(int cell, double bending, const HandleTargets& targets);
+  double RimEnergy(int spoke, const Eigen::Matrix3d& rotation) const;
+  double TimesOfBending(int cell, int neighbor) const;
+  Eigen::Vector3d ResidualOfSpoke(int spoke, const Eigen::Vector3d& edge,
+    const Eigen::Vector3d& restEdge, const Eigen::Vector3d& turned) const;
+  /// alpha A; 0 unless rotations are coupled.
+  double BendingFactor() const
+  {
+    return this->Colors.empty() ? 0.0 : this->Bending * this->FreeArea;
+  }
   void Start(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
+  void SolveStep(Eigen::VectorXd& step);
+  double NegligibleEnergy() const;
+  void WriteResult(bool wantTransforms, DeformedSurface& result) const;
 
   InitialGuess GuessKind;
   std::unique_ptr<FrameDeformer> Guess;
@@ -146,23 +141,12 @@ private:
   int MaximumIterations = 10;
   double Tolerance = 1e-4;
 
-  // Sites are numbered so that the unknowns come first; then the held vertices
-  // next to them, which are the last cells to be fitted in each step; then the
-  // other cells, those of moving handles and next to them; then the neighbors
-  // of cells, which stay at rest.
-  int ActiveCount = 0;
-  int CellCount = 0;
-  std::vector<int> Vertices;       // #sites
-  std::vector<int> Unknowns;       // #unknowns, System's number of a cell
-  std::vector<int> Cells;          // #unknowns, the inverse
-  std::vector<char> HoldsRotation; // #cells
-  std::vector<int> SpokeOffsets;   // #cells + 1
-  std::vector<Spoke> Spokes;
-  std::vector<Rim> Rims; // as Spokes; empty without rims
-  /// Active cells in groups of which no two are neighbors; empty unless
-  /// rotations are coupled.
+  RigidCells Cells;
+  std::vector<RigidCells::Rim> Rims; // as Cells.Spokes; empty without rims
+  /// RigidCells::Color(); empty unless rotations are coupled.
   std::vector<std::vector<int>> Colors;
-  std::vector<int> MovingHandles; // #V, index in Moving or -1
+  std::vector<char> HoldsRotation; // #cells
+  std::vector<int> MovingHandles;  // #V, index in Moving or -1
   double FreeArea = 0.0;
 
   Points Rest;                  // #sites x 3
