@@ -49,6 +49,26 @@ bool IsVertex(double id, const cartan::TriangleMesh& mesh)
   return id >= 0.0 && id < mesh.NumberOfVertices() && id == std::floor(id);
 }
 
+/// The rows of each vertex: #V. Those whose ids are no vertices are foreign.
+std::vector<std::vector<vtkIdType>> RowsByVertex(const cartan::TriangleMesh& mesh,
+  vtkDataArray* vertices, vtkDataArray* neighbors, cartan::IdSample& foreign)
+{
+  std::vector<std::vector<vtkIdType>> rows(mesh.NumberOfVertices());
+  for (vtkIdType row = 0; row < vertices->GetNumberOfTuples(); ++row)
+  {
+    const double vertex = vertices->GetTuple1(row);
+    if (IsVertex(vertex, mesh) && IsVertex(neighbors->GetTuple1(row), mesh))
+    {
+      rows[static_cast<int>(vertex)].push_back(row);
+    }
+    else
+    {
+      foreign.Add(row);
+    }
+  }
+  return rows;
+}
+
 /// The table's row for each directed edge of the mesh. Throws unless rows and
 /// directed edges correspond one to one.
 std::vector<vtkIdType> MatchRows(const cartan::TriangleMesh& mesh, vtkTable* table)
@@ -63,22 +83,10 @@ std::vector<vtkIdType> MatchRows(const cartan::TriangleMesh& mesh, vtkTable* tab
         std::to_string(mesh.NumberOfDirectedEdges()) +
         " directed edges: they belong to different surfaces.");
   }
-  // Rows by vertex, then directed edges by neighbor through a scratch array.
-  std::vector<std::vector<vtkIdType>> rowsOfVertex(mesh.NumberOfVertices());
   cartan::IdSample foreign;
-  for (vtkIdType row = 0; row < numberOfRows; ++row)
-  {
-    const double vertex = vertices->GetTuple1(row);
-    const double neighbor = neighbors->GetTuple1(row);
-    if (IsVertex(vertex, mesh) && IsVertex(neighbor, mesh))
-    {
-      rowsOfVertex[static_cast<int>(vertex)].push_back(row);
-    }
-    else
-    {
-      foreign.Add(row);
-    }
-  }
+  const std::vector<std::vector<vtkIdType>> rowsOfVertex =
+    RowsByVertex(mesh, vertices, neighbors, foreign);
+  // A vertex's directed edges by neighbor, in a scratch array.
   std::vector<vtkIdType> rowOfEdge(mesh.NumberOfDirectedEdges(), -1);
   std::vector<int> edgeTo(mesh.NumberOfVertices(), -1);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)

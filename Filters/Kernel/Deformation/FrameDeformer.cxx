@@ -143,71 +143,79 @@ Eigen::Vector3d FrameDeformer::TriangleSum(int vertex, const Eigen::VectorXd& fr
   return sum;
 }
 
-void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices& transforms,
-  DeformedSurface& result, const ExecutionContext& context)
+/// b_i, to which held neighbors and soft constraints add.
+///
+/// Neutral offset: the target of an edge, R_mean (p_j - p_i), is what its two
+/// ends make of it when each carries the middle of the body under it rigidly,
+///   (R_i + R_j)/2 (p_j - p_i) + (R_j - R_i) (o_i + o_j)/2,
+/// with o from the middle to the skin: the skin stretches outside of a bend
+/// and shrinks inside, and the middle keeps its length.
+Eigen::Vector3d FrameDeformer::RightHandSide(int unknown, const HandleTargets& targets,
+  const Matrices& transforms, const DeformedSurface& result) const
 {
   const HandleLaplacian& system = *this->Positions;
   const Points& rest = *this->Problem.Rest;
-  Points& positions = result.Positions;
   const bool isByTriangle = this->TriangleTransforms.rows() > 0;
-  if (isByTriangle && this->TriangleWeights.rows() == 0)
-  {
-    this->TriangleWeights =
-      CornerWeights(*this->Problem.Mesh, rest, this->Problem.PositionWeights, context);
-  }
-  // Neutral offset: the target of an edge, R_mean (p_j - p_i), is what its two
-  // ends make of it when each carries the middle of the body under it rigidly,
-  //   (R_i + R_j)/2 (p_j - p_i) + (R_j - R_i) (o_i + o_j)/2,
-  // with o from the middle to the skin: the skin stretches outside of a bend
-  // and shrinks inside, and the middle keeps its length.
   const Points* offsets =
     this->PreservesVolume() && this->Correction == VolumeCorrection::NeutralOffset
     ? &this->Model->Offsets
     : nullptr;
+  const int v = system.Vertex(unknown);
+  const Eigen::Vector3d point = rest.row(v);
+  const auto transform = MatrixAt(transforms, v);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  if (isByTriangle)
+  {
+    sum = this->TriangleSum(v, result.FrameScale);
+  }
+  for (const auto* edge = system.EdgesBegin(unknown); edge != system.EdgesEnd(unknown); ++edge)
+  {
+    const int w = system.Vertex(edge->Neighbor);
+    const auto other = MatrixAt(transforms, w);
+    const double half = 0.5 * edge->Weight;
+    if (!isByTriangle)
+    {
+      sum += half * ((transform + other) * (point - rest.row(w).transpose()));
+    }
+    if (offsets)
+    {
+      sum += half * ((transform - other) * (offsets->row(v) + offsets->row(w)).transpose());
+    }
+    if (edge->Neighbor >= system.NumberOfUnknowns())
+    {
+      sum += edge->Weight * result.Positions.row(w).transpose();
+    }
+  }
+  if (system.SquaredSoftWeight(unknown) > 0.0)
+  {
+    sum += 0.5 * system.SquaredSoftWeight(unknown) *
+      HandleTarget(this->Problem, targets, v, system.MovingHandle(unknown));
+  }
+  return sum;
+}
+
+void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices& transforms,
+  DeformedSurface& result, const ExecutionContext& context)
+{
+  const HandleLaplacian& system = *this->Positions;
+  if (this->TriangleTransforms.rows() > 0 && this->TriangleWeights.rows() == 0)
+  {
+    this->TriangleWeights = CornerWeights(
+      *this->Problem.Mesh, *this->Problem.Rest, this->Problem.PositionWeights, context);
+  }
   Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
   context.For(system.NumberOfUnknowns(),
     [&](int begin, int end)
     {
       for (int i = begin; i < end; ++i)
       {
-        const int v = system.Vertex(i);
-        const Eigen::Vector3d point = rest.row(v);
-        const auto transform = MatrixAt(transforms, v);
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        if (isByTriangle)
-        {
-          sum = this->TriangleSum(v, result.FrameScale);
-        }
-        for (const auto* edge = system.EdgesBegin(i); edge != system.EdgesEnd(i); ++edge)
-        {
-          const int w = system.Vertex(edge->Neighbor);
-          const auto other = MatrixAt(transforms, w);
-          const double half = 0.5 * edge->Weight;
-          if (!isByTriangle)
-          {
-            sum += half * ((transform + other) * (point - rest.row(w).transpose()));
-          }
-          if (offsets)
-          {
-            sum += half * ((transform - other) * (offsets->row(v) + offsets->row(w)).transpose());
-          }
-          if (edge->Neighbor >= system.NumberOfUnknowns())
-          {
-            sum += edge->Weight * positions.row(w).transpose();
-          }
-        }
-        if (system.SquaredSoftWeight(i) > 0.0)
-        {
-          sum += 0.5 * system.SquaredSoftWeight(i) *
-            HandleTarget(this->Problem, targets, v, system.MovingHandle(i));
-        }
-        rightHandSide.row(i) = sum;
+        rightHandSide.row(i) = this->RightHandSide(i, targets, transforms, result);
       }
     });
   const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide);
   for (int i = 0; i < system.NumberOfUnknowns(); ++i)
   {
-    positions.row(system.Vertex(i)) = solution.row(i);
+    result.Positions.row(system.Vertex(i)) = solution.row(i);
   }
 }
 

@@ -11,7 +11,7 @@ enum class VolumeCorrection
 {
   None,
   /// Lipman et al. 2007, section 4: frames scaled by sqrt(h / h~), the surface
-  /// put together twice.
+  /// reconstructed twice.
   FrameScaling,
   /// Edges that bend about the middle of the body instead of about its skin:
   /// linear in the frames, no curvature needed.
@@ -19,7 +19,7 @@ enum class VolumeCorrection
 };
 
 /// What all methods share that first find how each vertex's frame changes and
-/// then put the surface together from the changed frames: the position system,
+/// then reconstruct the surface from the changed frames: the position system,
 /// the handles' places, and the preservation of volume. With rest positions p
 /// and frame changes R the positions x minimize
 ///
@@ -101,6 +101,8 @@ protected:
 private:
   void SolvePositions(const HandleTargets& targets, const Matrices& transforms,
     DeformedSurface& result, const ExecutionContext& context);
+  Eigen::Vector3d RightHandSide(int unknown, const HandleTargets& targets,
+    const Matrices& transforms, const DeformedSurface& result) const;
   Eigen::Vector3d TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const;
   void ScaleFrames(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);

@@ -2,6 +2,7 @@
 #include "Mesh/CoincidentBorders.h"
 
 #include "Mesh/CoincidentPoints.h"
+#include "Mesh/Geometry.h"
 
 #include <algorithm>
 #include <array>
@@ -20,19 +21,6 @@ struct BorderEdge
   bool IsWith(const BorderEdge& other) const { return this->Places == other.Places; }
 };
 
-double UsedDiagonal(const TriangleMesh& mesh, const Points& points)
-{
-  Eigen::AlignedBox3d box;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    if (mesh.IsUsed(v))
-    {
-      box.extend(points.row(v).transpose());
-    }
-  }
-  return box.diagonal().norm();
-}
-
 std::vector<int> BorderVertices(const TriangleMesh& mesh)
 {
   std::vector<int> border;
@@ -45,31 +33,31 @@ std::vector<int> BorderVertices(const TriangleMesh& mesh)
   }
   return border;
 }
-}
 
-CoincidentBorders FindCoincidentBorders(
-  const TriangleMesh& mesh, const Points& points, const ExecutionContext& context)
+/// Of each of the vertices the first one in the same place: #V, -1 at the others.
+std::vector<int> FindPlaces(const TriangleMesh& mesh, const Points& points,
+  const std::vector<int>& vertices, const ExecutionContext& context)
 {
-  CoincidentBorders result;
-  const std::vector<int> border = BorderVertices(mesh);
-  if (border.empty())
+  Points positions(static_cast<Eigen::Index>(vertices.size()), 3);
+  for (std::size_t i = 0; i < vertices.size(); ++i)
   {
-    return result;
-  }
-  Points positions(static_cast<Eigen::Index>(border.size()), 3);
-  for (std::size_t i = 0; i < border.size(); ++i)
-  {
-    positions.row(static_cast<Eigen::Index>(i)) = points.row(border[i]);
+    positions.row(static_cast<Eigen::Index>(i)) = points.row(vertices[i]);
   }
   const std::vector<int> first =
-    FindCoincidentPoints(positions, std::vector<char>(border.size(), 1),
-      CoincidentBorders::SamePlace * UsedDiagonal(mesh, points), context);
+    FindCoincidentPoints(positions, std::vector<char>(vertices.size(), 1),
+      CoincidentBorders::SamePlace * BoundingDiagonal(points, mesh.GetTriangles()), context);
   std::vector<int> place(mesh.NumberOfVertices(), -1);
-  for (std::size_t i = 0; i < border.size(); ++i)
+  for (std::size_t i = 0; i < vertices.size(); ++i)
   {
-    place[border[i]] = border[first[i]];
+    place[vertices[i]] = vertices[first[i]];
   }
+  return place;
+}
 
+/// Those with a length, sorted: edges in the same place follow one another.
+std::vector<BorderEdge> SortBorderEdges(
+  const TriangleMesh& mesh, const std::vector<int>& border, const std::vector<int>& place)
+{
   std::vector<BorderEdge> edges;
   for (const int v : border)
   {
@@ -84,6 +72,21 @@ CoincidentBorders FindCoincidentBorders(
   std::sort(edges.begin(), edges.end(),
     [](const BorderEdge& a, const BorderEdge& b)
     { return a.Places != b.Places ? a.Places < b.Places : a.Ends < b.Ends; });
+  return edges;
+}
+}
+
+CoincidentBorders FindCoincidentBorders(
+  const TriangleMesh& mesh, const Points& points, const ExecutionContext& context)
+{
+  CoincidentBorders result;
+  const std::vector<int> border = BorderVertices(mesh);
+  if (border.empty())
+  {
+    return result;
+  }
+  const std::vector<int> place = FindPlaces(mesh, points, border, context);
+  const std::vector<BorderEdge> edges = SortBorderEdges(mesh, border, place);
   std::vector<char> isFound(mesh.NumberOfVertices(), 0);
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end)
   {

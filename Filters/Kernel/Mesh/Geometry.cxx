@@ -109,4 +109,14 @@ double BoundingDiagonal(const Points& points)
 {
   return points.rows() ? (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm() : 0.0;
 }
+
+double BoundingDiagonal(const Points& points, const Triangles& triangles)
+{
+  Eigen::AlignedBox3d box;
+  for (Eigen::Index corner = 0; corner < triangles.size(); ++corner)
+  {
+    box.extend(points.row(triangles.data()[corner]).transpose());
+  }
+  return box.diagonal().norm();
+}
 }

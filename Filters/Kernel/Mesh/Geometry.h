@@ -26,6 +26,8 @@ Points VertexNormals(
 Eigen::VectorXd MixedVoronoiAreas(
   const TriangleMesh& mesh, const Points& points, const ExecutionContext& context = {});
 
-/// The length of the bounding box's diagonal.
+/// The length of the bounding box's diagonal; of all points, and of those that
+/// triangles use.
 double BoundingDiagonal(const Points& points);
+double BoundingDiagonal(const Points& points, const Triangles& triangles);
 }
