@@ -3,57 +3,15 @@
 
 #include "Bridge/FilterRun.h"
 #include "Bridge/PreparedSurface.h"
+#include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Mesh/Polygons.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
-#include <map>
-#include <set>
-#include <vector>
-
 vtkStandardNewMacro(vtkPrepareSurface);
 
 static_assert(cartan::LargestHole == 500, "MaximumHoleEdges has this limit");
-
-namespace
-{
-double UsedDiagonal(const cartan::TriangleSoup& soup)
-{
-  Eigen::AlignedBox3d box;
-  for (Eigen::Index corner = 0; corner < soup.Faces.size(); ++corner)
-  {
-    box.extend(soup.Positions.row(soup.Faces.data()[corner]).transpose());
-  }
-  return box.diagonal().norm();
-}
-
-/// Gives polygons on the same points the same triangles, those of the first: front
-/// and back of a square may have been split along different diagonals, and would
-/// not be seen as doubled.
-void SplitDoubledPolygonsAlike(cartan::TriangleSoup& soup)
-{
-  std::map<std::vector<int>, Eigen::Index> firstRow;
-  for (Eigen::Index begin = 0, end = 0; begin < soup.Faces.rows(); begin = end)
-  {
-    std::set<int> corners;
-    for (; end < soup.Faces.rows() && soup.CellIds[end] == soup.CellIds[begin]; ++end)
-    {
-      corners.insert({ soup.Faces(end, 0), soup.Faces(end, 1), soup.Faces(end, 2) });
-    }
-    const Eigen::Index count = end - begin;
-    if (count < 2 || static_cast<Eigen::Index>(corners.size()) != count + 2)
-    {
-      continue; // a triangle, or a strip that comes back to a point
-    }
-    const auto known = firstRow.emplace(std::vector<int>(corners.begin(), corners.end()), begin);
-    if (!known.second)
-    {
-      soup.Faces.middleRows(begin, count) =
-        soup.Faces.middleRows(known.first->second, count).eval();
-    }
-  }
-}
-}
 
 void vtkPrepareSurface::Execute(cartan::FilterRun& run)
 {
@@ -61,12 +19,13 @@ void vtkPrepareSurface::Execute(cartan::FilterRun& run)
     cartan::ReadTriangles(run.Input(), "input", run.Context().Part(0.0, 0.1));
   if (this->DropDoubledTriangles)
   {
-    SplitDoubledPolygonsAlike(soup);
+    cartan::SplitDoubledPolygonsAlike(soup.Faces, soup.CellIds);
   }
   cartan::RepairOptions options;
   options.MergesPoints = this->MergePoints;
   options.MergesInnerPoints = this->MergeInnerPoints;
-  options.MergeTolerance = this->Tolerance * (this->ToleranceIsAbsolute ? 1.0 : UsedDiagonal(soup));
+  options.MergeTolerance = this->Tolerance *
+    (this->ToleranceIsAbsolute ? 1.0 : cartan::BoundingDiagonal(soup.Positions, soup.Faces));
   options.DropsDoubled = this->DropDoubledTriangles;
   options.Orients = this->OrientConsistently;
   options.CutsNonManifold = this->CutNonManifold;

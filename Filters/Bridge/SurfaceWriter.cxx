@@ -2,6 +2,7 @@
 #include "Bridge/SurfaceWriter.h"
 
 #include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Mesh/Polygons.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -121,26 +122,6 @@ vtkSmartPointer<vtkDataArray> NewNormals(
   return normals;
 }
 
-/// The unit normals of cells; zero for cells without triangles.
-Points CellNormals(const Surface& surface, const Points& positions, vtkIdType numberOfCells)
-{
-  const Points areaVectors = TriangleAreaVectors(positions, surface.Mesh->GetTriangles());
-  Points normals = Points::Zero(numberOfCells, 3);
-  for (Eigen::Index t = 0; t < areaVectors.rows(); ++t)
-  {
-    normals.row(surface.Cells->CellIds[t]) += areaVectors.row(t);
-  }
-  for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
-  {
-    const double size = normals.row(cell).norm();
-    if (size > 0.0)
-    {
-      normals.row(cell) /= size;
-    }
-  }
-  return normals;
-}
-
 /// Replaces the normals of points or cells. Returns a warning where their number
 /// is not that of the points or cells: such an array is left out.
 template <typename Compute>
@@ -181,8 +162,13 @@ std::string UpdateAllNormals(const Surface& surface, const Points* rest, const P
   const std::string ofPoints =
     UpdateNormals(output->GetPointData(), output->GetNumberOfPoints(), "points", rest, positions,
       [&](const Points& points) { return VertexNormals(*surface.Mesh, points, context); });
-  const std::string ofCells = UpdateNormals(output->GetCellData(), numberOfCells, "cells", rest,
-    positions, [&](const Points& points) { return CellNormals(surface, points, numberOfCells); });
+  const std::string ofCells =
+    UpdateNormals(output->GetCellData(), numberOfCells, "cells", rest, positions,
+      [&](const Points& points)
+      {
+        return PolygonNormals(
+          points, surface.Mesh->GetTriangles(), surface.Cells->CellIds, numberOfCells);
+      });
   return ofPoints + (ofPoints.empty() || ofCells.empty() ? "" : " ") + ofCells;
 }
 }
