@@ -136,7 +136,7 @@ Curvatures FitCurvatures(
   Curvatures curvatures = Zero(mesh.NumberOfVertices());
   const auto fit = [&](int begin, int end)
   {
-    Neighborhood neighborhood(mesh, points, normals);
+    Neighborhood neighborhood(mesh, points, &normals);
     for (int v = begin; v < end; ++v)
     {
       const Eigen::Vector3d normal = normals.row(v).transpose();

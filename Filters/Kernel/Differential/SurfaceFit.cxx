@@ -228,7 +228,8 @@ void Neighborhood::AddFan(int v, double minimumCosine, double maximumSquaredDist
     {
       continue;
     }
-    const double cosine = this->Normals.row(this->Ids[0]).dot(this->Normals.row(w));
+    const double cosine =
+      this->Normals ? this->Normals->row(this->Ids[0]).dot(this->Normals->row(w)) : 1.0;
     const Eigen::Vector3d offset =
       (this->Positions.row(w) - this->Positions.row(this->Ids[0])).transpose();
     if (cosine > minimumCosine && offset.squaredNorm() <= maximumSquaredDistance)

@@ -43,8 +43,9 @@ public:
   /// grow at most this far.
   static constexpr int MaximumRings = 5;
 
-  /// The normals are those of VertexNormals().
-  Neighborhood(const TriangleMesh& mesh, const Points& points, const Points& normals)
+  /// With the normals of VertexNormals() the points behind sharp bends are left
+  /// out, without normals none is.
+  Neighborhood(const TriangleMesh& mesh, const Points& points, const Points* normals = nullptr)
     : Mesh(mesh)
     , Positions(points)
     , Normals(normals)
@@ -67,7 +68,8 @@ public:
   /// Without the vertex itself.
   int Size() const { return this->Count - 1; }
 
-  /// From the vertex to its i-th point.
+  /// The i-th point, and the way to it from the vertex.
+  int Vertex(int i) const { return this->Ids[i + 1]; }
   const Eigen::Vector3d& Offset(int i) const { return this->Offsets[i + 1]; }
 
   /// Whether the i-th point is a neighbor or its normal has turned by less than
@@ -80,7 +82,7 @@ private:
 
   const TriangleMesh& Mesh;
   const Points& Positions;
-  const Points& Normals;
+  const Points* Normals;
   std::array<int, MaximumPoints + 1> Ids;
   std::array<Eigen::Vector3d, MaximumPoints + 1> Offsets;
   std::array<double, MaximumPoints + 1> Cosines; // of the turn of the normal
@@ -106,7 +108,7 @@ constexpr double LeastDetermination = 0.025;
 bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   const SecondForm* earlier, SecondForm& form);
 
-/// The form of the normal curvatures 2 h / |p|^2 towards the points, for
+/// The form of the normal curvatures 2 h / |p|^2 toward the points, for
 /// neighborhoods that do not determine a quadric: what is left open is decided
 /// by the normal, which is kept, and by a third derivative of zero. So edges
 /// between two rows are taken as straight if they are normal to it. As FitCubic

@@ -2,7 +2,7 @@
 #include "Measure/ShapeDistance.h"
 
 #include "Algebra/Rotation.h"
-#include "Differential/FitNeighborhood.h"
+#include "Differential/SurfaceFit.h"
 #include "Measure/Areas.h"
 #include "Mesh/Geometry.h"
 #include "Mesh/TriangleShape.h"
@@ -62,9 +62,8 @@ struct QuadraticPatch
 /// Fits patches to both surfaces around v over the same coordinates (s, t), which
 /// are along uncorrelated axes of the reference's tangent plane and have unit
 /// variance. False if the points coincide.
-bool FitPatches(const Points& reference, const Points& current, int v,
-  const FitNeighborhood& neighborhood, const Eigen::Vector3d& normal, QuadraticPatch& rest,
-  QuadraticPatch& deformed)
+bool FitPatches(const Points& current, int v, const Neighborhood& neighborhood,
+  const Eigen::Vector3d& normal, QuadraticPatch& rest, QuadraticPatch& deformed)
 {
   Eigen::Matrix<double, 3, 2> axes;
   axes.col(0) = normal.unitOrthogonal();
@@ -72,7 +71,7 @@ bool FitPatches(const Points& reference, const Points& current, int v,
   Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
   for (int k = 0; k < neighborhood.Size(); ++k)
   {
-    const Eigen::RowVector2d planar = (reference.row(neighborhood[k]) - reference.row(v)) * axes;
+    const Eigen::RowVector2d planar = neighborhood.Offset(k).transpose() * axes;
     moments += planar.transpose() * planar / neighborhood.Size();
   }
   const double turn = 0.5 * std::atan2(2.0 * moments(0, 1), moments(0, 0) - moments(1, 1));
@@ -93,8 +92,8 @@ bool FitPatches(const Points& reference, const Points& current, int v,
   Eigen::Matrix<double, 5, 6> rightHandSide = Eigen::Matrix<double, 5, 6>::Zero();
   for (int k = 0; k < neighborhood.Size(); ++k)
   {
-    const Eigen::RowVector3d before = reference.row(neighborhood[k]) - reference.row(v);
-    const Eigen::RowVector3d after = current.row(neighborhood[k]) - current.row(v);
+    const Eigen::RowVector3d before = neighborhood.Offset(k);
+    const Eigen::RowVector3d after = current.row(neighborhood.Vertex(k)) - current.row(v);
     const double s = before.dot(axes.col(0));
     const double t = before.dot(axes.col(1));
     Vector5 monomials;
@@ -154,7 +153,7 @@ ShapeDistance MeasureShapeDistance(const TriangleMesh& mesh, const Points& refer
   context.For(mesh.NumberOfVertices(),
     [&](int begin, int end)
     {
-      FitNeighborhood neighborhood(mesh, reference);
+      Neighborhood neighborhood(mesh, reference);
       QuadraticPatch rest;
       QuadraticPatch deformed;
       for (int v = begin; v < end; ++v)
@@ -163,9 +162,8 @@ ShapeDistance MeasureShapeDistance(const TriangleMesh& mesh, const Points& refer
         {
           continue;
         }
-        neighborhood.Collect(v);
-        if (FitPatches(
-              reference, current, v, neighborhood, normals.row(v).transpose(), rest, deformed))
+        neighborhood.CollectBall(v);
+        if (FitPatches(current, v, neighborhood, normals.row(v).transpose(), rest, deformed))
         {
           distance.Density[v] = RotationEnergy(rest, deformed);
         }

@@ -27,7 +27,7 @@ struct ShapeDistance
 /// normal, R is the orthogonal factor of F = R U.
 ///
 /// Both surfaces are fitted by quadratics in coordinates (x, y) of the reference's
-/// tangent plane around each vertex (see FitNeighborhood), which gives F and its
+/// tangent plane around each vertex (see Neighborhood::CollectBall), which gives F and its
 /// derivatives, and with them those of R: R^T dR is the cross product with
 ///
 ///   omega = (tr U - U)^-1 axial(R^T dF - dF^T R),   |dR|_F^2 = 2 |omega|^2.
