@@ -5,7 +5,11 @@
 
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfacePair.h"
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/Areas.h"
+#include "Kernel/Measure/ComponentVolumes.h"
+#include "Kernel/Measure/EdgeLengths.h"
+#include "Kernel/Measure/LocalVolumes.h"
+#include "Kernel/Measure/ShapeDistance.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"

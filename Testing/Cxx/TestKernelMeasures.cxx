@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/Areas.h"
+#include "Kernel/Measure/ComponentVolumes.h"
+#include "Kernel/Measure/EdgeLengths.h"
+#include "Kernel/Measure/LocalVolumes.h"
+#include "Kernel/Measure/ShapeDistance.h"
 
 #include "Kernel/Differential/RotationFit.h"
 #include "MeasureShapes.h"

@@ -3,7 +3,7 @@
 
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/HandleLaplacian.h"
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/ShapeDistance.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 #include "TestShapes.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Differential/FrameReconstruction.h"
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/ComponentVolumes.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
@@ -368,7 +368,7 @@ TEST(DiscreteFormsMorph, KeepsVolumeAndEdgesThroughOneAndAHalfLaps)
 
 TEST(DiscreteFormsMorph, WindsAndUnwindsEvenly)
 {
-  // The turn of the bar's end against its start, laps counted along the bar, is
+  // The turn of the bar's end against its start, full turns counted along the bar, is
   // nearly t times that at the end; not quite, because the lengths of its edges,
   // which grow with the square of the turn, go evenly as well.
   const Shape bar = shapes::Bar(4, 4, 64, { 1, 1, 16 });

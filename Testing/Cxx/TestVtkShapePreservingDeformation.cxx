@@ -3,7 +3,10 @@
 
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Differential/Curvature.h"
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/Areas.h"
+#include "Kernel/Measure/ComponentVolumes.h"
+#include "Kernel/Measure/EdgeLengths.h"
+#include "Kernel/Measure/ShapeDistance.h"
 #include "VtkTestHelpers.h"
 #include "vtkHandleMotion.h"
 #include "vtkRotationInvariantDeformation.h"
@@ -175,7 +178,7 @@ TEST(ShapePreservingDeformation, BendsABarAllButExactly)
   // By three half turns, to a circular arc and a half.
   const Shape bar = TableBar();
   const Points exact = ExactlyBent(bar.Positions, 0.8, 4.2, 3.0 * shapes::Pi);
-  // But for the chords of its triangles, of which 34 go around a lap and a half.
+  // But for the chords of its triangles, of which 34 go around one and a half turns.
   EXPECT_NEAR(VolumeOf(bar, exact), 5.0, 0.05);
   vtkNew<vtkShapePreservingDeformation> filter;
   filter->SetInputData(Marked(bar));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceMorph.h"
 
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/ComponentVolumes.h"
 #include "MorphShapes.h"
 #include "VtkTestHelpers.h"
 #include "vtkVolumeChange.h"
