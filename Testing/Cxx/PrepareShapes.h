@@ -50,30 +50,89 @@ inline Shape Moved(Shape shape, const Eigen::RowVector3d& by)
   return shape;
 }
 
-inline double Area(const cartan::Points& points, const cartan::Triangles& faces)
+/// A cube of edge 1 and n x n quads on each side.
+inline Shape Box(const Eigen::RowVector3d& at = Eigen::RowVector3d::Zero(), int n = 1)
 {
-  double area = 0.0;
-  for (Eigen::Index t = 0; t < faces.rows(); ++t)
-  {
-    const Eigen::Vector3d a = points.row(faces(t, 0));
-    const Eigen::Vector3d b = points.row(faces(t, 1));
-    const Eigen::Vector3d c = points.row(faces(t, 2));
-    area += 0.5 * (b - a).cross(c - a).norm();
-  }
-  return area;
+  return Moved(Bar(n, n, n, { 1, 1, 1 }), at);
 }
 
-inline double Volume(const cartan::Points& points, const cartan::Triangles& faces)
+/// Merges all points, also those of bodies in contact.
+inline cartan::RepairOptions MergingAll()
 {
-  double volume = 0.0;
-  for (Eigen::Index t = 0; t < faces.rows(); ++t)
+  cartan::RepairOptions options;
+  options.MergesInnerPoints = true;
+  return options;
+}
+
+/// A band of quads that closes after `turns` half twists; ids as in Patch.
+inline Shape TwistedBand(int around, int across, int turns)
+{
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<Eigen::Vector3i> faces;
+  const auto id = [&](int i, int j) {
+    return i < around ? i * (across + 1) + j : turns % 2 == 1 ? across - j : j;
+  };
+  for (int i = 0; i < around; ++i)
   {
-    const Eigen::Vector3d a = points.row(faces(t, 0));
-    const Eigen::Vector3d b = points.row(faces(t, 1));
-    const Eigen::Vector3d c = points.row(faces(t, 2));
-    volume += a.dot(b.cross(c)) / 6.0;
+    const double u = 2 * Pi * i / around;
+    for (int j = 0; j <= across; ++j)
+    {
+      const double v = static_cast<double>(j) / across - 0.5;
+      const double twist = 0.5 * turns * u;
+      const double r = 2.0 + v * std::cos(twist);
+      positions.emplace_back(r * std::cos(u), r * std::sin(u), v * std::sin(twist));
+    }
+    for (int j = 0; j < across; ++j)
+    {
+      faces.emplace_back(id(i, j), id(i + 1, j), id(i + 1, j + 1));
+      faces.emplace_back(id(i, j), id(i + 1, j + 1), id(i, j + 1));
+    }
   }
-  return volume;
+  return { ToPoints(positions), ToTriangles(faces) };
+}
+
+/// The grid of a Klein bottle immersed in space (the figure-8 immersion): v comes
+/// back reversed after u went around.
+inline Shape KleinBottle(int around, int tube)
+{
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<Eigen::Vector3i> faces;
+  const auto id = [&](int i, int j)
+  {
+    const int k = i < around ? j : tube - j;
+    return (i % around) * tube + (k % tube + tube) % tube;
+  };
+  for (int i = 0; i < around; ++i)
+  {
+    const double u = 2 * Pi * i / around;
+    for (int j = 0; j < tube; ++j)
+    {
+      const double v = 2 * Pi * j / tube;
+      const double r = 3.0 + std::cos(u / 2) * std::sin(v) - std::sin(u / 2) * std::sin(2 * v);
+      positions.emplace_back(r * std::cos(u), r * std::sin(u),
+        std::sin(u / 2) * std::sin(v) + std::cos(u / 2) * std::sin(2 * v));
+      faces.emplace_back(id(i, j), id(i + 1, j), id(i + 1, j + 1));
+      faces.emplace_back(id(i, j), id(i + 1, j + 1), id(i, j + 1));
+    }
+  }
+  return { ToPoints(positions), ToTriangles(faces) };
+}
+
+/// `pages` unit squares of n x n quads that share one side along z.
+inline Shape Book(int pages, int n)
+{
+  Shape book;
+  for (int page = 0; page < pages; ++page)
+  {
+    const double angle = 2 * Pi * page / pages;
+    PatchOptions options;
+    options.CountU = options.CountV = n;
+    const Shape sheet = Patch(options,
+      [angle](double u, double v)
+      { return Eigen::Vector3d(u * std::cos(angle), u * std::sin(angle), v); });
+    book = page == 0 ? sheet : Union(book, sheet);
+  }
+  return book;
 }
 
 /// What a repaired surface is, by counting.

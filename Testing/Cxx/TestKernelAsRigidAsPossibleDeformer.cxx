@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
 
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/ShapePreservingDeformer.h"
 #include "Kernel/Mesh/Geometry.h"
@@ -29,6 +30,7 @@ using cartan::TriangleMesh;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using shapes::MakeMesh;
+using shapes::ManyThreads;
 using shapes::Shape;
 
 namespace
@@ -42,19 +44,7 @@ constexpr InitialGuess AllGuesses[] = { InitialGuess::RestShape, InitialGuess::P
 /// Handle 1 and 2 are the ends of the extent along `axis`; 2 moves.
 HandleProblem MakeProblem(const Shape& shape, int axis, double share = 0.1)
 {
-  HandleProblem problem;
-  problem.Mesh = std::make_shared<const TriangleMesh>(MakeMesh(shape));
-  problem.Rest = std::make_shared<const Points>(shape.Positions);
-  const auto coordinate = shape.Positions.col(axis);
-  const double low = coordinate.minCoeff();
-  const double extent = coordinate.maxCoeff() - low;
-  for (int v = 0; v < shape.NumberOfVertices(); ++v)
-  {
-    const double part = (coordinate[v] - low) / extent;
-    problem.Handle.push_back(part < share ? 1 : part > 1.0 - share ? 2 : 0);
-  }
-  problem.Moving = { 2 };
-  return problem;
+  return shapes::ProblemOf(shape, shapes::EndsAlong(shape, axis, share));
 }
 
 /// A turn by a rotation vector about `center`, then a shift.
@@ -150,27 +140,6 @@ double Coupling(const HandleProblem& problem, RigidityEnergy energy, double bend
     area += problem.Handle[v] == 0 ? areas[static_cast<Eigen::Index>(v)] : 0.0;
   }
   return energy == RigidityEnergy::SmoothedRotations ? bending * area : 0.0;
-}
-
-/// Chunks of `count` from the last to the first, each in a thread of its own.
-cartan::ExecutionContext ManyThreads(int count)
-{
-  return cartan::ExecutionContext(
-    [count](int n, const cartan::ExecutionContext::Range& body)
-    {
-      std::vector<std::thread> threads;
-      for (int chunk = count - 1; chunk >= 0; --chunk)
-      {
-        const int begin = static_cast<int>(static_cast<long long>(n) * chunk / count);
-        const int end = static_cast<int>(static_cast<long long>(n) * (chunk + 1) / count);
-        threads.emplace_back([&body, begin, end]() { body(begin, end); });
-      }
-      for (std::thread& thread : threads)
-      {
-        thread.join();
-      }
-    },
-    {});
 }
 
 /// A bar along z whose upper end bends by `degrees` about an axis parallel to x

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AllDeformers.h"
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Base/Constants.h"
 #include "TestShapes.h"
@@ -19,23 +20,12 @@ using cartan::Points;
 
 constexpr double Degree = cartan::FullTurn / 360.0;
 
-/// Where the bar's handles are, along z from -2 to 2.
-using HandleOf = std::function<int(const Eigen::Vector3d&)>;
-
-HandleProblem Bar(const HandleOf& handleOf, const std::vector<int>& moving)
+/// A bar along z from -2 to 2.
+HandleProblem Bar(const shapes::HandleOf& handleOf, const std::vector<int>& moving)
 {
   shapes::Shape shape = shapes::Bar(3, 3, 12, { 1.0, 1.0, 4.0 }, true);
   shape.Positions.rowwise() -= shape.Positions.colwise().mean().eval();
-  HandleProblem problem;
-  problem.Mesh =
-    std::make_shared<const cartan::TriangleMesh>(shape.NumberOfVertices(), shape.Faces);
-  problem.Rest = std::make_shared<const Points>(shape.Positions);
-  for (int v = 0; v < shape.NumberOfVertices(); ++v)
-  {
-    problem.Handle.push_back(handleOf(shape.Positions.row(v).transpose()));
-  }
-  problem.Moving = moving;
-  return problem;
+  return shapes::ProblemOf(shape, handleOf, moving);
 }
 
 /// Both ends and a patch in the middle of one side.
@@ -206,9 +196,10 @@ TEST(CommonMotion, KeepsLaps)
   const Points found =
     Deform(*deformer, { Turn(1000.0 * Degree * axis), Turn(1400.0 * Degree * axis) }).Positions;
   EXPECT_LT(LargestDifference(found, frame(expected)), 1e-10);
-  // A lap between handles is no common motion.
-  const Points lap = Deform(*deformer, { Turn(0.0 * axis), Turn(360.0 * Degree * axis) }).Positions;
-  EXPECT_GT(LargestDifference(lap, *problem.Rest), 0.1);
+  // A full turn between handles is no common motion.
+  const Points turned =
+    Deform(*deformer, { Turn(0.0 * axis), Turn(360.0 * Degree * axis) }).Positions;
+  EXPECT_GT(LargestDifference(turned, *problem.Rest), 0.1);
 }
 
 TEST(CommonMotion, IsFollowedBeyondAHandle)

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/LaplacianDeformer.h"
 #include "Kernel/Deformation/MotionBlend.h"
 #include "Kernel/Deformation/MultiresolutionDeformer.h"
 #include "Kernel/Deformation/PoissonDeformer.h"
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/ComponentVolumes.h"
+#include "Kernel/Measure/EdgeLengths.h"
 #include "TestShapes.h"
 
 #include <gtest/gtest.h>
@@ -33,15 +35,11 @@ struct BentBar
     // Bar() may be centered; here it stands on z = 0 around x = y = 1/2.
     const Eigen::RowVector3d low = this->Shape.Positions.colwise().minCoeff();
     this->Shape.Positions.rowwise() -= low;
-    this->Problem.Mesh = std::make_shared<const cartan::TriangleMesh>(
-      this->Shape.NumberOfVertices(), this->Shape.Faces);
-    this->Problem.Rest = std::make_shared<const Points>(this->Shape.Positions);
-    this->Problem.Moving = { 1 };
-    for (int v = 0; v < this->Shape.NumberOfVertices(); ++v)
-    {
-      const double z = this->Shape.Positions(v, 2);
-      this->Problem.Handle.push_back(z <= 1.0 + 1e-9 ? 2 : (z >= 5.0 - 1e-9 ? 1 : 0));
-    }
+    this->Problem = shapes::ProblemOf(this->Shape,
+      [](const Eigen::Vector3d& x) { return x[2] <= 1.0 + 1e-9 ? 2
+                                       : x[2] >= 5.0 - 1e-9    ? 1
+                                                               : 0; },
+      { 1 });
     // The center line becomes an arc of length 4 toward +y.
     const double radius = 4.0 / this->Angle;
     HandleMotion motion;
@@ -342,7 +340,7 @@ TEST(PoissonDeformer, KeepsLapsAndSpreadsScale)
   int found = 0;
   for (int v = 0; v < bar.Shape.NumberOfVertices(); ++v)
   {
-    // In the middle half of each: one and a half laps, that is a half turn.
+    // In the middle half of each: one and a half full turns, that is a half turn.
     if (std::abs(bar.Shape.Positions(v, 2) - 3.0) < 1e-9)
     {
       const Eigen::Matrix3d transform = cartan::MatrixAt(result.Transforms, v);

@@ -10,6 +10,7 @@ using cartan::LaplacianWeights;
 using cartan::Points;
 using cartan::SparseMatrix;
 using cartan::TriangleMesh;
+using shapes::Area;
 using shapes::MakeMesh;
 using shapes::Shape;
 
@@ -49,11 +50,6 @@ double WeightOf(const Shape& shape, LaplacianWeights weights, int a, int b)
   }
   ADD_FAILURE() << "no edge " << a << " " << b;
   return 0.0;
-}
-
-double Area(const Points& points, const cartan::Triangles& faces)
-{
-  return 0.5 * cartan::TriangleAreaVectors(points, faces).rowwise().norm().sum();
 }
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/LaplacianDeformer.h"
 #include "Kernel/Deformation/MultiresolutionDeformer.h"
 #include "Kernel/Deformation/RotationInvariantDeformer.h"
 #include "Kernel/Differential/LaplaceOperator.h"
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/EdgeLengths.h"
 #include "RealMeshes.h"
 #include "TestShapes.h"
 
@@ -70,18 +71,13 @@ shapes::Shape Tube(int along, double length, double part = -1.0)
 
 HandleProblem EndsOf(const shapes::Shape& shape, double heldLength, double unit = 1.0)
 {
-  HandleProblem problem;
-  problem.Mesh =
-    std::make_shared<const cartan::TriangleMesh>(shape.NumberOfVertices(), shape.Faces);
-  problem.Rest = std::make_shared<const Points>(unit * shape.Positions);
   const double low = shape.Positions.col(2).minCoeff() + heldLength;
   const double high = shape.Positions.col(2).maxCoeff() - heldLength;
-  for (int v = 0; v < shape.NumberOfVertices(); ++v)
-  {
-    const double z = shape.Positions(v, 2);
-    problem.Handle.push_back(z < low ? 1 : z > high ? 2 : 0);
-  }
-  problem.Moving = { 2 };
+  HandleProblem problem = shapes::ProblemOf(
+    shape, [&](const Eigen::Vector3d& x) { return x[2] < low ? 1
+                                             : x[2] > high   ? 2
+                                                             : 0; });
+  problem.Rest = std::make_shared<const Points>(unit * shape.Positions);
   return problem;
 }
 
@@ -212,21 +208,11 @@ TEST(PolyharmonicRounding, RefinementReachesTheKnownSolution)
 TEST(MultiresolutionDeformer, SpreadsFramesWhereTheBaseCollapses)
 {
   // A camel whose legs hang between handles: its base leaves them next to points.
-  const shapes::Shape camel = shapes::RealMesh("camel");
-  HandleProblem problem;
-  problem.Mesh = std::make_shared<const cartan::TriangleMesh>(shapes::MakeMesh(camel));
+  shapes::Shape camel = shapes::RealMesh("camel");
   const Points centered = camel.Positions.rowwise() - camel.Positions.colwise().mean();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centered.transpose() * centered);
-  const Points turned = centered * axes.eigenvectors();
-  problem.Rest = std::make_shared<const Points>(turned);
-  const double low = turned.col(2).minCoeff();
-  const double size = turned.col(2).maxCoeff() - low;
-  for (int v = 0; v < camel.NumberOfVertices(); ++v)
-  {
-    const double part = (turned(v, 2) - low) / size;
-    problem.Handle.push_back(part < 0.2 ? 1 : part > 0.8 ? 2 : 0);
-  }
-  problem.Moving = { 2 };
+  camel.Positions = centered * axes.eigenvectors();
+  const HandleProblem problem = shapes::ProblemOf(camel, shapes::EndsAlong(camel, 2, 0.2));
   HandleMotion motion;
   motion.RotationVector = { 40.0 * shapes::Pi / 180.0, 0.0, 0.0 };
   motion.Linear = cartan::RotationFromVector(motion.RotationVector);
@@ -243,7 +229,7 @@ TEST(MultiresolutionDeformer, SpreadsFramesWhereTheBaseCollapses)
       const int w = problem.Mesh->Neighbor(d);
       if (problem.Handle[v] == 0 || problem.Handle[w] == 0)
       {
-        const double before = (turned.row(v) - turned.row(w)).norm();
+        const double before = (camel.Positions.row(v) - camel.Positions.row(w)).norm();
         stretches.push_back(std::abs((result.row(v) - result.row(w)).norm() / before - 1.0));
       }
     }
@@ -251,7 +237,7 @@ TEST(MultiresolutionDeformer, SpreadsFramesWhereTheBaseCollapses)
     const double quantile = stretches[stretches.size() * 95 / 100];
     shapes::ShowFigure("95 % of edges change by less, order " + std::to_string(order), quantile);
     EXPECT_LT(quantile, 0.6) << order;
-    EXPECT_EQ(Deform(deformer, HandleMotion()), turned) << order;
+    EXPECT_EQ(Deform(deformer, HandleMotion()), camel.Positions) << order;
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "HandleShapes.h"
 #include "Kernel/Deformation/LaplacianDeformer.h"
 #include "Kernel/Deformation/MultiresolutionDeformer.h"
 #include "Kernel/Deformation/PolyharmonicSystem.h"
@@ -22,17 +23,13 @@ HandleProblem Island(int count, cartan::LaplacianWeights weights)
   const shapes::Shape shape = shapes::Graph(
     count, 2.0, [](double x, double y) { return 0.2 * std::sin(3.0 * x) * std::cos(2.0 * y); },
     0.1);
-  HandleProblem problem;
-  problem.Mesh =
-    std::make_shared<const cartan::TriangleMesh>(shape.NumberOfVertices(), shape.Faces);
-  problem.Rest = std::make_shared<const Points>(shape.Positions);
-  const Eigen::RowVector3d center = shape.Positions.colwise().mean();
-  for (int v = 0; v < shape.NumberOfVertices(); ++v)
-  {
-    const double radius = (shape.Positions.row(v) - center).head<2>().norm();
-    problem.Handle.push_back(radius < 0.15 ? 2 : radius > 0.5 && radius < 0.75 ? 1 : 0);
-  }
-  problem.Moving = { 2 };
+  const Eigen::Vector3d center = shape.Positions.colwise().mean();
+  HandleProblem problem = shapes::ProblemOf(shape,
+    [&](const Eigen::Vector3d& x)
+    {
+      const double radius = (x - center).head<2>().norm();
+      return radius < 0.15 ? 2 : radius > 0.5 && radius < 0.75 ? 1 : 0;
+    });
   problem.Weights = weights;
   return problem;
 }

@@ -6,102 +6,22 @@
 
 #include <filesystem>
 #include <limits>
-#include <map>
 #include <random>
 
 using cartan::RepairedSurface;
 using cartan::RepairOptions;
+using shapes::Book;
+using shapes::Box;
+using shapes::KleinBottle;
+using shapes::MergingAll;
 using shapes::Repaired;
 using shapes::Shape;
 using shapes::Topology;
 using shapes::TopologyOf;
+using shapes::TwistedBand;
 
 namespace
 {
-Shape Box(const Eigen::RowVector3d& at = Eigen::RowVector3d::Zero(), int n = 1)
-{
-  return shapes::Moved(shapes::Bar(n, n, n, { 1, 1, 1 }), at);
-}
-
-/// Merges all points, also those of bodies in contact.
-RepairOptions MergingAll()
-{
-  RepairOptions options;
-  options.MergesInnerPoints = true;
-  return options;
-}
-
-/// A band of quads that closes after `turns` half twists; ids as in Patch.
-Shape TwistedBand(int around, int across, int turns)
-{
-  std::vector<Eigen::Vector3d> positions;
-  std::vector<Eigen::Vector3i> faces;
-  const auto id = [&](int i, int j) {
-    return i < around ? i * (across + 1) + j : turns % 2 == 1 ? across - j : j;
-  };
-  for (int i = 0; i < around; ++i)
-  {
-    const double u = 2 * shapes::Pi * i / around;
-    for (int j = 0; j <= across; ++j)
-    {
-      const double v = static_cast<double>(j) / across - 0.5;
-      const double twist = 0.5 * turns * u;
-      const double r = 2.0 + v * std::cos(twist);
-      positions.emplace_back(r * std::cos(u), r * std::sin(u), v * std::sin(twist));
-    }
-    for (int j = 0; j < across; ++j)
-    {
-      faces.emplace_back(id(i, j), id(i + 1, j), id(i + 1, j + 1));
-      faces.emplace_back(id(i, j), id(i + 1, j + 1), id(i, j + 1));
-    }
-  }
-  return { shapes::ToPoints(positions), shapes::ToTriangles(faces) };
-}
-
-/// The grid of a Klein bottle immersed in space (the figure-8 immersion): v comes
-/// back reversed after u went around.
-Shape KleinBottle(int around, int tube)
-{
-  std::vector<Eigen::Vector3d> positions;
-  std::vector<Eigen::Vector3i> faces;
-  const auto id = [&](int i, int j)
-  {
-    const int k = i < around ? j : tube - j;
-    return (i % around) * tube + (k % tube + tube) % tube;
-  };
-  for (int i = 0; i < around; ++i)
-  {
-    const double u = 2 * shapes::Pi * i / around;
-    for (int j = 0; j < tube; ++j)
-    {
-      const double v = 2 * shapes::Pi * j / tube;
-      const double r = 3.0 + std::cos(u / 2) * std::sin(v) - std::sin(u / 2) * std::sin(2 * v);
-      positions.emplace_back(r * std::cos(u), r * std::sin(u),
-        std::sin(u / 2) * std::sin(v) + std::cos(u / 2) * std::sin(2 * v));
-      faces.emplace_back(id(i, j), id(i + 1, j), id(i + 1, j + 1));
-      faces.emplace_back(id(i, j), id(i + 1, j + 1), id(i, j + 1));
-    }
-  }
-  return { shapes::ToPoints(positions), shapes::ToTriangles(faces) };
-}
-
-/// `pages` unit squares of n x n quads that share one side along z.
-Shape Book(int pages, int n)
-{
-  Shape book;
-  for (int page = 0; page < pages; ++page)
-  {
-    const double angle = 2 * shapes::Pi * page / pages;
-    shapes::PatchOptions options;
-    options.CountU = options.CountV = n;
-    const Shape sheet = shapes::Patch(options,
-      [angle](double u, double v)
-      { return Eigen::Vector3d(u * std::cos(angle), u * std::sin(angle), v); });
-    book = page == 0 ? sheet : shapes::Union(book, sheet);
-  }
-  return book;
-}
-
 /// How many triangles of `faces` are those of `other` with the same start and
 /// direction, row by row.
 int SameRows(const cartan::Triangles& faces, const cartan::Triangles& other)
@@ -168,133 +88,6 @@ TEST(PrepareSurface, OpenPartsKeepTheSideOfMostOfTheirArea)
   const RepairedSurface result = Repaired(sheet);
   EXPECT_EQ(result.Counts.TurnedTriangles, 1);
   EXPECT_EQ(result.Faces, shapes::Plane(6).Faces);
-}
-
-TEST(PrepareSurface, BoxesThatShareAnEdgeBecomeTwoClosedOnes)
-{
-  // On one edge, and along a line of three: points within the line have four
-  // edges of four triangles.
-  for (const int n : { 1, 3 })
-  {
-    const Shape boxes = shapes::Union(Box({ 0, 0, 0 }, n), Box({ 1, 1, 0 }, n));
-    for (const bool insideOut : { false, true })
-    {
-      const RepairedSurface result =
-        Repaired(insideOut ? shapes::Inverted(boxes) : boxes, MergingAll());
-      const Topology topology = TopologyOf(result);
-      EXPECT_EQ(topology.Components, 2);
-      EXPECT_EQ(topology.BorderEdges, 0);
-      EXPECT_EQ(topology.Euler, 4);
-      EXPECT_EQ(result.Counts.NonManifoldEdges, n);
-      EXPECT_EQ(result.Counts.CutPoints, n + 1);
-      EXPECT_EQ(result.Counts.CopiedPoints, n + 1);
-      EXPECT_NEAR(shapes::Volume(result.Positions, result.Faces), 2.0, 1e-12);
-    }
-  }
-}
-
-TEST(PrepareSurface, BoxesThatShareAVertexBecomeTwo)
-{
-  const Shape boxes = shapes::Union(Box(), Box({ 1, 1, 1 }));
-  const RepairedSurface result = Repaired(boxes, MergingAll());
-  EXPECT_EQ(TopologyOf(result).Components, 2);
-  EXPECT_EQ(TopologyOf(result).BorderEdges, 0);
-  EXPECT_EQ(result.Counts.MergedPoints, 1);
-  EXPECT_EQ(result.Counts.CutPoints, 1);
-  EXPECT_EQ(result.Positions.rows(), 16);
-  // Each box gets its own point back, so that it can be carried back.
-  for (int v = 0; v < 16; ++v)
-  {
-    EXPECT_EQ(result.OriginalPoints[result.PreparedPoints[v]], v);
-  }
-  std::map<int, int> sizes;
-  for (const int first : result.CopyOf)
-  {
-    ++sizes[first];
-  }
-  EXPECT_EQ(std::count_if(sizes.begin(), sizes.end(),
-              [](const std::pair<const int, int>& size) { return size.second == 2; }),
-    1);
-  EXPECT_EQ(sizes.size(), 15u);
-}
-
-TEST(PrepareSurface, ABodyThatTouchesItselfIsCutButStaysWhole)
-{
-  // A ring of seven boxes of a 3 x 3 frame whose first and last share an edge.
-  // Their soup has the walls between neighbors twice.
-  const std::vector<Eigen::RowVector3d> cells = { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 },
-    { 2, 1, 0 }, { 2, 2, 0 }, { 1, 2, 0 }, { 0, 1, 0 } };
-  Shape ring = Box(cells[0]);
-  for (std::size_t i = 1; i < cells.size(); ++i)
-  {
-    ring = shapes::Union(ring, Box(cells[i]));
-  }
-  const RepairedSurface result = Repaired(ring, MergingAll());
-  const Topology topology = TopologyOf(result);
-  EXPECT_EQ(topology.Components, 1);
-  EXPECT_EQ(topology.BorderEdges, 0);
-  EXPECT_EQ(topology.Euler, 2);
-  EXPECT_NEAR(shapes::Volume(result.Positions, result.Faces), 7.0, 1e-12);
-  EXPECT_EQ(result.Counts.DoubledTriangles, 2 * 2 * 6);
-}
-
-TEST(PrepareSurface, PointsInsideTheSurfaceAreLeftAlone)
-{
-  // Boxes in contact, and a plate of no thickness that is closed at its rim.
-  const Shape front = shapes::Plane(4);
-  Shape plate = shapes::Union(front, shapes::Inverted(front));
-  for (int corner = 0; corner < plate.Faces.size(); ++corner)
-  {
-    int& v = plate.Faces.data()[corner];
-    v = plate.Positions.row(v).cwiseAbs().maxCoeff() > 0.49 ? v % front.NumberOfVertices() : v;
-  }
-  for (const bool dropsDoubled : { false, true })
-  {
-    RepairOptions options;
-    options.DropsDoubled = dropsDoubled;
-    const RepairedSurface result = Repaired(plate, options);
-    EXPECT_EQ(result.Counts.MergedPoints, 0);
-    EXPECT_EQ(TopologyOf(result).BorderEdges, 0);
-  }
-  const Shape boxes = shapes::Union(Box({ 0, 0, 0 }, 2), Box({ 1, 0, 0 }, 2));
-  EXPECT_EQ(Repaired(boxes).Faces, boxes.Faces);
-  // As soup they have borders only; the wall between them is there twice.
-  EXPECT_EQ(TopologyOf(Repaired(shapes::Soup(boxes))).BorderEdges, 0);
-}
-
-TEST(PrepareSurface, PagesOfABookComeApart)
-{
-  for (const int pages : { 3, 5 })
-  {
-    const RepairedSurface result = Repaired(Book(pages, 4));
-    const Topology topology = TopologyOf(result);
-    EXPECT_EQ(topology.Components, pages);
-    EXPECT_EQ(topology.Euler, pages);
-    EXPECT_EQ(topology.BorderEdges, 16 * pages);
-    EXPECT_EQ(result.Counts.NonManifoldEdges, 4);
-    EXPECT_EQ(result.Counts.CutPoints, 5);
-    EXPECT_EQ(result.Counts.CopiedPoints, 5 * (pages - 1));
-    EXPECT_NEAR(shapes::Area(result.Positions, result.Faces), pages, 1e-12);
-  }
-}
-
-TEST(PrepareSurface, OneSidedSurfacesAreCutAlongAPath)
-{
-  for (const int turns : { 0, 1, 2, 3 })
-  {
-    const Shape band = TwistedBand(24, 4, turns);
-    const RepairedSurface result = Repaired(band);
-    const bool isOneSided = turns % 2 == 1;
-    EXPECT_EQ(TopologyOf(result).Components, 1);
-    EXPECT_EQ(TopologyOf(result).Euler, isOneSided ? 1 : 0); // a disk or a ring
-    EXPECT_EQ(result.Counts.OneSidedEdges > 0, isOneSided);
-    EXPECT_LE(result.Counts.OneSidedEdges, 8);
-    EXPECT_EQ(result.Faces.rows(), band.Faces.rows());
-  }
-  const RepairedSurface bottle = Repaired(KleinBottle(24, 12));
-  EXPECT_EQ(TopologyOf(bottle).Components, 1);
-  EXPECT_EQ(TopologyOf(bottle).Euler, 0); // cut along a circle, a ring
-  EXPECT_GT(TopologyOf(bottle).BorderEdges, 0);
 }
 
 TEST(PrepareSurface, WallsOfCavitiesFaceInwards)

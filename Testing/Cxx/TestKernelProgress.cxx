@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AllDeformers.h"
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
@@ -47,17 +48,10 @@ struct Recorder
 cartan::HandleProblem BarProblem(bool constrainPositions)
 {
   const shapes::Shape shape = shapes::Bar(3, 3, 12, { 1.0, 1.0, 4.0 }, true);
-  cartan::HandleProblem problem;
-  problem.Mesh =
-    std::make_shared<const cartan::TriangleMesh>(shape.NumberOfVertices(), shape.Faces);
-  problem.Rest = std::make_shared<const cartan::Points>(shape.Positions);
-  const double low = shape.Positions.col(2).minCoeff();
-  for (int v = 0; v < shape.NumberOfVertices(); ++v)
-  {
-    const double z = shape.Positions(v, 2) - low;
-    problem.Handle.push_back(z < 0.5 ? 1 : z > 3.5 ? 2 : 0);
-  }
-  problem.Moving = { 2 };
+  cartan::HandleProblem problem = shapes::ProblemOf(
+    shape, [](const Eigen::Vector3d& x) { return x[2] < 0.5 ? 1
+                                            : x[2] > 3.5    ? 2
+                                                            : 0; });
   problem.ConstrainPositions = constrainPositions;
   return problem;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Deformation/RotationInvariantDeformer.h"
 
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Differential/DiscreteForms.h"
 #include "Kernel/Mesh/Geometry.h"
@@ -33,7 +34,9 @@ using cartan::TriangleMesh;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using shapes::MakeMesh;
+using shapes::ManyThreads;
 using shapes::Shape;
+using shapes::Volume;
 
 namespace
 {
@@ -46,22 +49,16 @@ constexpr LaplacianWeights AllWeights[] = { LaplacianWeights::Uniform, Laplacian
 /// handles 2 and 3 move.
 HandleProblem MakeProblem(const Shape& shape, int axis, double share = 0.15)
 {
-  HandleProblem problem;
-  problem.Mesh = std::make_shared<const TriangleMesh>(MakeMesh(shape));
-  problem.Rest = std::make_shared<const Points>(shape.Positions);
-  const auto coordinate = shape.Positions.col(axis);
-  const double low = coordinate.minCoeff();
-  const double extent = coordinate.maxCoeff() - low;
+  const shapes::HandleOf end = shapes::EndsAlong(shape, axis, share);
   const auto other = shape.Positions.col((axis + 1) % 3);
   const double otherEnd = other.maxCoeff() - 0.05 * (other.maxCoeff() - other.minCoeff());
-  problem.Handle.assign(shape.NumberOfVertices(), 0);
-  for (int v = 0; v < shape.NumberOfVertices(); ++v)
-  {
-    const double part = (coordinate[v] - low) / extent;
-    problem.Handle[v] = part < share ? 1 : part > 1.0 - share ? 2 : other[v] > otherEnd ? 3 : 0;
-  }
-  problem.Moving = { 2, 3 };
-  return problem;
+  return shapes::ProblemOf(shape,
+    [&](const Vector3d& x)
+    {
+      const int handle = end(x);
+      return handle > 0 ? handle : x[(axis + 1) % 3] > otherEnd ? 3 : 0;
+    },
+    { 2, 3 });
 }
 
 /// For frames and positions.
@@ -114,19 +111,6 @@ DeformedSurface Deform(const HandleProblem& problem, const std::vector<HandleMot
 double Distance(const Points& a, const Points& b)
 {
   return (a - b).rowwise().norm().maxCoeff() / cartan::BoundingDiagonal(a);
-}
-
-double Volume(const Points& points, const cartan::Triangles& faces)
-{
-  double volume = 0.0;
-  for (Eigen::Index t = 0; t < faces.rows(); ++t)
-  {
-    const Vector3d a = points.row(faces(t, 0));
-    const Vector3d b = points.row(faces(t, 1));
-    const Vector3d c = points.row(faces(t, 2));
-    volume += a.dot(b.cross(c)) / 6.0;
-  }
-  return volume;
 }
 
 /// The paper's editing, literally: the rectangular systems of Eq. 1 and Eq. 5
@@ -350,26 +334,6 @@ std::vector<HandleMotion> TwoMotions(const Shape& shape, bool rigid)
     Motion(1.7 * Turn(0.2, 0.1, -1.0), center, size * Vector3d(0.0, 0.2, 0.1)) };
 }
 
-/// Chunks of `count` from the last to the first, each in a thread of its own.
-cartan::ExecutionContext ManyThreads(int count)
-{
-  return cartan::ExecutionContext(
-    [count](int n, const cartan::ExecutionContext::Range& body)
-    {
-      std::vector<std::thread> threads;
-      for (int chunk = count - 1; chunk >= 0; --chunk)
-      {
-        const int begin = static_cast<int>(static_cast<long long>(n) * chunk / count);
-        const int end = static_cast<int>(static_cast<long long>(n) * (chunk + 1) / count);
-        threads.emplace_back([&body, begin, end]() { body(begin, end); });
-      }
-      for (std::thread& thread : threads)
-      {
-        thread.join();
-      }
-    },
-    {});
-}
 }
 
 //------------------------------------------------------------------------------
@@ -870,17 +834,11 @@ TEST(RotationInvariantDeformer, BendsABarWithThePublishedLossOfVolume)
   // A bar of 1 x 1 x 6, half a unit held at each end, cotangent weights, the
   // upper end turned and free to find its place.
   const Shape bar = shapes::Bar(8, 8, 48, { 1, 1, 6 });
-  HandleProblem problem;
-  problem.Mesh = std::make_shared<const TriangleMesh>(MakeMesh(bar));
-  problem.Rest = std::make_shared<const Points>(bar.Positions);
+  HandleProblem problem = shapes::ProblemOf(
+    bar, [](const Vector3d& x) { return x[2] < 0.5 + 1e-9 ? 1
+                                   : x[2] > 5.5 - 1e-9    ? 2
+                                                          : 0; });
   problem.ConstrainPositions = false;
-  problem.Handle.assign(bar.NumberOfVertices(), 0);
-  for (int v = 0; v < bar.NumberOfVertices(); ++v)
-  {
-    const double z = bar.Positions(v, 2);
-    problem.Handle[v] = z < 0.5 + 1e-9 ? 1 : z > 5.5 - 1e-9 ? 2 : 0;
-  }
-  problem.Moving = { 2 };
   RotationInvariantDeformer deformer(problem);
   struct Case
   {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Deformation/SimilarityDeformer.h"
 
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
 #include "Kernel/Deformation/LaplacianDeformer.h"
 #include "Kernel/Differential/RotationFit.h"
-#include "Kernel/Measure/Measures.h"
+#include "Kernel/Measure/ComponentVolumes.h"
+#include "Kernel/Measure/EdgeLengths.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
 
@@ -54,18 +56,14 @@ constexpr LaplacianWeights AllWeights[] = { LaplacianWeights::Uniform, Laplacian
 HandleProblem MakeProblem(
   const Shape& shape, double share, LaplacianWeights weights = LaplacianWeights::Cotangent)
 {
-  HandleProblem problem;
-  problem.Mesh = std::make_shared<const TriangleMesh>(MakeMesh(shape));
-  problem.Rest = std::make_shared<const Points>(shape.Positions);
-  const auto z = shape.Positions.col(2);
-  const double low = z.minCoeff();
-  const double high = z.maxCoeff();
-  for (int v = 0; v < shape.NumberOfVertices(); ++v)
-  {
-    const double part = (z[v] - low) / (high - low);
-    problem.Handle.push_back(part < share + 1e-9 ? 1 : part > 1.0 - share - 1e-9 ? 2 : 0);
-  }
-  problem.Moving = { 2 };
+  const double low = shape.Positions.col(2).minCoeff();
+  const double high = shape.Positions.col(2).maxCoeff();
+  HandleProblem problem = shapes::ProblemOf(shape,
+    [&](const Vector3d& x)
+    {
+      const double part = (x[2] - low) / (high - low);
+      return part < share + 1e-9 ? 1 : part > 1.0 - share - 1e-9 ? 2 : 0;
+    });
   problem.Weights = problem.PositionWeights = weights;
   return problem;
 }
@@ -595,14 +593,7 @@ TEST(SimilarityDeformer, BendsGradedMeshes)
 TEST_P(SimilarityTranslation, RefitsFindTheRotations)
 {
   const TranslationCase& which = this->GetParam();
-  HandleProblem problem;
-  problem.Mesh = std::make_shared<const TriangleMesh>(MakeMesh(which.Surface));
-  problem.Rest = std::make_shared<const Points>(which.Surface.Positions);
-  for (int v = 0; v < which.Surface.NumberOfVertices(); ++v)
-  {
-    problem.Handle.push_back(which.Handle(which.Surface.Positions.row(v).transpose()));
-  }
-  problem.Moving = { 2 };
+  const HandleProblem problem = shapes::ProblemOf(which.Surface, which.Handle);
   const HandleTargets targets = Targets({ Motion(Matrix3d::Identity(), which.Translation) });
   const auto rotations = [&](cartan::SurfaceDeformer& deformer)
   {
@@ -858,16 +849,10 @@ TEST(SimilarityDeformer, WarnsOfMirroringAndFlattening)
 TEST(SimilarityDeformer, BendsAnOpenPlane)
 {
   const Shape plane = shapes::Plane(12, 1.0);
-  HandleProblem problem;
-  problem.Mesh = std::make_shared<const TriangleMesh>(MakeMesh(plane));
-  problem.Rest = std::make_shared<const Points>(plane.Positions);
-  problem.Moving = { 2 };
-  for (int v = 0; v < plane.NumberOfVertices(); ++v)
-  {
-    problem.Handle.push_back(plane.Positions(v, 0) < -0.45 ? 1 : 0);
-    problem.Handle.back() =
-      plane.Positions.row(v).head<2>().norm() < 0.15 ? 2 : problem.Handle.back();
-  }
+  const HandleProblem problem = shapes::ProblemOf(
+    plane, [](const Vector3d& x) { return x.head<2>().norm() < 0.15 ? 2
+                                     : x[0] < -0.45                 ? 1
+                                                                    : 0; });
   SimilarityDeformer deformer(problem, {});
   const Vector3d lift(0.0, 0.0, 0.3);
   const DeformedSurface result = Deform(deformer, Targets({ Motion(Matrix3d::Identity(), lift) }));

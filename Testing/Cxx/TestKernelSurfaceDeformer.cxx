@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AllDeformers.h"
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "TestShapes.h"
 
@@ -19,18 +20,12 @@ HandleProblem ThreeHandles(int along)
 {
   shapes::Shape shape = shapes::Bar(4, 4, along, { 1.0, 1.0, 4.0 }, true);
   shape.Positions.rowwise() -= shape.Positions.colwise().mean().eval();
-  HandleProblem problem;
-  problem.Mesh =
-    std::make_shared<const cartan::TriangleMesh>(shape.NumberOfVertices(), shape.Faces);
-  problem.Rest = std::make_shared<const Points>(shape.Positions);
-  for (int v = 0; v < shape.NumberOfVertices(); ++v)
-  {
-    const Eigen::Vector3d x = shape.Positions.row(v);
-    const bool isSide = x[0] > 0.5 - 1e-9 && std::abs(x[2]) < 0.26 && std::abs(x[1]) < 0.3;
-    problem.Handle.push_back(x[2] < -1.5 ? 1 : x[2] > 1.5 ? 2 : isSide ? 3 : 0);
-  }
-  problem.Moving = { 2 };
-  return problem;
+  return shapes::ProblemOf(shape,
+    [](const Eigen::Vector3d& x)
+    {
+      const bool isSide = x[0] > 0.5 - 1e-9 && std::abs(x[2]) < 0.26 && std::abs(x[1]) < 0.3;
+      return x[2] < -1.5 ? 1 : x[2] > 1.5 ? 2 : isSide ? 3 : 0;
+    });
 }
 
 HandleMotion Turn()

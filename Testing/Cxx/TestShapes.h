@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-/// Surfaces with known properties for the tests. All are oriented outwards (or
+/// Surfaces with known properties for the tests. All are oriented outward (or
 /// to +z where there is no inside), and the same on every machine: a jitter
 /// comes from a fixed seed and a generator whose sequence the standard fixes.
 namespace shapes
@@ -353,6 +353,32 @@ inline Shape Inverted(Shape shape)
 {
   shape.Faces.col(1).swap(shape.Faces.col(2));
   return shape;
+}
+
+/// The area, and the volume that is enclosed if the triangles close.
+inline double Area(const cartan::Points& points, const cartan::Triangles& faces)
+{
+  double area = 0.0;
+  for (Eigen::Index t = 0; t < faces.rows(); ++t)
+  {
+    const Eigen::Vector3d a = points.row(faces(t, 0));
+    const Eigen::Vector3d b = points.row(faces(t, 1));
+    const Eigen::Vector3d c = points.row(faces(t, 2));
+    area += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return area;
+}
+inline double Volume(const cartan::Points& points, const cartan::Triangles& faces)
+{
+  double volume = 0.0;
+  for (Eigen::Index t = 0; t < faces.rows(); ++t)
+  {
+    const Eigen::Vector3d a = points.row(faces(t, 0));
+    const Eigen::Vector3d b = points.row(faces(t, 1));
+    const Eigen::Vector3d c = points.row(faces(t, 2));
+    volume += a.dot(b.cross(c)) / 6.0;
+  }
+  return volume;
 }
 
 /// Moves every point by up to `amplitude` in every coordinate.

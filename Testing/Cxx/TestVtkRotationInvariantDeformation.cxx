@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkRotationInvariantDeformation.h"
 
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "VtkTestHelpers.h"
@@ -14,23 +15,12 @@
 
 using cartan::Points;
 using shapes::Shape;
+using shapes::Volume;
 using vtktest::MakePolyData;
 
 namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
-
-/// The parts of the extent in z (or another axis) below and above are handles.
-std::function<int(const Eigen::Vector3d&)> Ends(const Shape& shape, int axis, double share)
-{
-  const double low = shape.Positions.col(axis).minCoeff();
-  const double extent = shape.Positions.col(axis).maxCoeff() - low;
-  return [low, extent, axis, share](const Eigen::Vector3d& x)
-  {
-    const double part = (x[axis] - low) / extent;
-    return part < share ? 1 : part > 1.0 - share ? 2 : 0;
-  };
-}
 
 vtkSmartPointer<vtkHandleMotion> Turn(const Eigen::Vector3d& center, const Eigen::Vector3d& axis,
   double degrees, const Eigen::Vector3d& translation = Eigen::Vector3d::Zero())
@@ -65,19 +55,6 @@ double Distance(const Points& a, const Points& b)
   return (a - b).rowwise().norm().maxCoeff() / cartan::BoundingDiagonal(a);
 }
 
-double Volume(const Points& points, const cartan::Triangles& faces)
-{
-  double volume = 0.0;
-  for (Eigen::Index t = 0; t < faces.rows(); ++t)
-  {
-    const Eigen::Vector3d a = points.row(faces(t, 0));
-    const Eigen::Vector3d b = points.row(faces(t, 1));
-    const Eigen::Vector3d c = points.row(faces(t, 2));
-    volume += a.dot(b.cross(c)) / 6.0;
-  }
-  return volume;
-}
-
 Eigen::Vector3d Apply(vtkHandleMotion* motion, const Eigen::Vector3d& x)
 {
   vtkNew<vtkMatrix4x4> matrix;
@@ -100,7 +77,7 @@ struct Scene
     : Original(shape)
     , Surface(MakePolyData(shape))
   {
-    vtktest::AddHandles(this->Surface, Ends(shape, axis, 0.15));
+    vtktest::AddHandles(this->Surface, shapes::EndsAlong(shape, axis, 0.15));
     this->Handles = this->Surface->GetPointData()->GetArray("Handle");
     const Eigen::Vector3d center = shape.Positions.colwise().mean();
     const double size = cartan::BoundingDiagonal(shape.Positions);
@@ -155,7 +132,7 @@ TEST(RotationInvariantDeformation, WithoutMotionReturnsTheSameBits)
   {
     Shape shape = shapes::RandomRigidMotion(3, 1234.5)(shapes::RealMesh("elephant"));
     const auto surface = MakePolyData(shape, precision);
-    vtktest::AddHandles(surface, Ends(shape, 1, 0.15));
+    vtktest::AddHandles(surface, shapes::EndsAlong(shape, 1, 0.15));
     vtkNew<vtkRotationInvariantDeformation> filter;
     filter->SetInputData(surface);
     Updated(filter);
