@@ -17,7 +17,7 @@
  *    copy per class of triangles that hang together over edges of exactly two
  *    triangles. Where bodies touch along an edge they come apart and stay
  *    closed. A one-sided surface, such as a Moebius strip, is cut along a path,
- * 5. orients closed components outwards, walls of cavities inwards
+ * 5. orients closed components outward, walls of cavities inward
  *    (OrientOutwards, AlternateNested),
  * 6. removes small components (MinimumComponentArea; off),
  * 7. fills holes (MaximumHoleEdges, MaximumHoleLength; off),
@@ -150,8 +150,8 @@ public:
 
   ///@{
   /**
-   * Whether to turn closed components outwards. With AlternateNested those inside
-   * an odd number of others face inwards: they are walls of cavities. Turn that
+   * Whether to turn closed components outward. With AlternateNested those inside
+   * an odd number of others face inward: they are walls of cavities. Turn that
    * off when the inner ones are bodies of their own. Both on by default.
    */
   vtkSetMacro(OrientOutwards, bool);

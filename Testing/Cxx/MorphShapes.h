@@ -70,7 +70,7 @@ inline cartan::Points BendAlong(shapes::Shape shape, int axis, double degrees)
 }
 
 /// Degrees by which the edge of a bar of square cross-section at one end is
-/// turned about z against the other, laps counted along the edge. For surfaces
+/// turned about z against the other, full turns counted along the edge. For surfaces
 /// that are twisted about the z axis but may lie anywhere.
 inline double TotalTwist(const shapes::Shape& bar, const cartan::Points& positions)
 {

@@ -28,7 +28,7 @@ DiscreteForms FormsOf(const Shape& shape)
     mesh, shape.Positions, cartan::VertexFrames(mesh, shape.Positions));
 }
 
-/// The difference of angles modulo a lap.
+/// The difference of angles modulo a full turn.
 double AngleDifference(double a, double b)
 {
   return std::abs(std::remainder(a - b, 2.0 * shapes::Pi));
@@ -248,7 +248,7 @@ TEST(DiscreteForms, AnglesAroundAnInteriorVertexSumToAWholeNumberOfLaps)
       }
     }
   }
-  shapes::ShowFigure("vertices whose angles sum to no single lap, three meshes", folded);
+  shapes::ShowFigure("vertices whose angles sum to no single full turn, three meshes", folded);
   EXPECT_GT(folded, 0);
 }
 

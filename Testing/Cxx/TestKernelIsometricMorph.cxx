@@ -586,20 +586,20 @@ TEST(IsometricMorph, OfTheSineRibbonIsThePapersInterpolationOfNormals)
   EXPECT_LT(ShapeDistance(mesh, middle, flat), 1e-12);
 }
 
-TEST(IsometricMorph, WindsLapsUp)
+TEST(IsometricMorph, WindsFullTurnsUp)
 {
-  // A flat ribbon becomes a spiral of five laps; half-way it has two and a half.
+  // A flat ribbon becomes a spiral of five full turns; half-way it has two and a half.
   const int quads = 400;
   const Shape flat = Ribbon(quads, 1.0, [](double u) { return Vector3d(20.0 * u, 0.0, 0.0); });
   const TriangleMesh mesh = MakeMesh(flat);
-  const auto spiral = [&](double laps)
+  const auto spiral = [&](double turns)
   {
     // Equal turns at equal edges: the points of a regular polygon, up to where
-    // the laps lie on each other.
+    // the turns lie on each other.
     std::vector<Vector3d> curve = { Vector3d::Zero() };
     for (int i = 0; i < quads; ++i)
     {
-      const double angle = 2 * Pi * laps * i / quads;
+      const double angle = 2 * Pi * turns * i / quads;
       curve.push_back(
         curve.back() + 20.0 / quads * Vector3d(std::cos(angle), std::sin(angle), 0.0));
     }

@@ -138,7 +138,7 @@ TEST(ColumnHeight, IsThePrintedFormulaWithoutItsCases)
 
 TEST(ColumnHeight, SolvesTheOrdinaryDifferentialEquationOfTheColumn)
 {
-  // Eq. 10, dh/dt = 1 - h div e_3, outwards from the bottom of the column, where
+  // Eq. 10, dh/dt = 1 - h div e_3, outward from the bottom of the column, where
   // the curvatures are those of the parallel surfaces.
   const double k1 = 0.8;
   const double k2 = -0.5;
@@ -302,7 +302,7 @@ TEST(LocalDepth, OfATorusIsTheMeanOfTheChordsOfTheExactTorus)
   const double minor = 0.7;
   const shapes::Shape torus = shapes::Torus(72, 36, major, minor);
   const VolumeModel model = ModelOf(torus);
-  // Where a ray from the surface inwards leaves the exact torus.
+  // Where a ray from the surface inward leaves the exact torus.
   const auto chord = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
   {
     const auto inside = [&](double s)

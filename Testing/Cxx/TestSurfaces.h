@@ -157,7 +157,7 @@ inline Surface Sphere(int resolution)
   return source->GetOutput();
 }
 
-/// Six quads that share their eight corners, oriented outwards.
+/// Six quads that share their eight corners, oriented outward.
 inline Surface Box(double x, double y, double z)
 {
   vtkNew<vtkCubeSource> source;

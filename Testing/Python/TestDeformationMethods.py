@@ -252,7 +252,7 @@ class Methods(unittest.TestCase):
         deformation.SetHandleMotion(2, motion(360, axis=(0, 0, 1)))
         deformation.GenerateFrameChangeOn()
         deformation.Update()
-        # Half way between the ends the surface has turned by half a lap, where
+        # Half way between the ends the surface has turned by half a turn, where
         # the change of a frame, |R - I|, is as large as it can be.
         change = array(deformation.GetOutput(), "FrameChange")
         self.assertAlmostEqual(change.max(), math.sqrt(8), places=1)

@@ -80,7 +80,7 @@ class FromAScript(unittest.TestCase):
         self.assertEqual(bend.GetNumberOfFactorizations(), 1)
         self.assertGreater(
             bend.GetOutput().GetFieldData().GetArray("ShapeDistance").GetValue(0), 1)
-        # The far end has turned by a lap and a third, which is a third.
+        # The far end has turned by a full turn and a third, which is a third.
         top = tableone.points_of(bar)[:, 2] > 4.2
         numpy.testing.assert_allclose(array(bend.GetOutput(), "RotationVector")[top],
                                       [[0, 0, 2 * math.pi / 3]] * top.sum(), atol=1e-12)

@@ -24,7 +24,7 @@ def moved(surface, points):
 
 
 def ribbon(triangles):
-    """A flat strip along x, and the same wound to a spiral of two laps."""
+    """A flat strip along x, and the same wound to a spiral of two full turns."""
     count = triangles // 2 + 1
     along = numpy.repeat(numpy.linspace(0, 20, count), 2)
     across = numpy.tile([0.0, 1.0], count)

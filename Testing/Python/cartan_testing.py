@@ -87,8 +87,8 @@ def bar(nx, ny, nz, lx, ly, lz):
 
     triangles = []
     for axis in range(3):
-        # u, v, axis form a right-handed system: (u, v) turns outwards where
-        # the axis ends, and inwards where it starts.
+        # u, v, axis form a right-handed system: (u, v) turns outward where
+        # the axis ends, and inward where it starts.
         u, v = (axis + 1) % 3, (axis + 2) % 3
         for end in (0, counts[axis]):
             for i in range(counts[u]):

@@ -265,7 +265,7 @@ def panels(case, pictures):
             crop = vtkExtractVOI()
             crop.SetInputConnection(reader.GetOutputPort())
             crop.SetVOI(left, left + WIDTH - 1, bottom, bottom + case.height - 1, 0, 0)
-            # To the origin, as what it is put together with.
+            # To the origin, as what it is joined with.
             shift = vtkImageTranslateExtent()
             shift.SetInputConnection(crop.GetOutputPort())
             shift.SetTranslation(-left, -bottom, 0)

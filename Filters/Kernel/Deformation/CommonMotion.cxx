@@ -18,14 +18,14 @@ namespace
 constexpr double SameMotion = 1e-12;
 
 /// A rotation vector for a handle's linear map: the given one if it belongs to
-/// the map's rotation, with its laps.
+/// the map's rotation, with its full turns.
 Eigen::Vector3d VectorOf(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& given)
 {
   return RotationFromVector(given).isApprox(rotation, 1e-9) ? given : VectorFromRotation(rotation);
 }
 
 /// The rotation vector r as seen from g: the one of R(g)^T R(r) nearest to r - g,
-/// so that laps about a common axis stay. What rounding leaves has no axis and is
+/// so that full turns about a common axis stay. What rounding leaves has no axis and is
 /// zero.
 Eigen::Vector3d RelativeVector(
   const Eigen::Vector3d& r, const Eigen::Vector3d& g, const Eigen::Matrix3d& rotationOfG)
@@ -34,10 +34,10 @@ Eigen::Vector3d RelativeVector(
   if (r.cross(g).norm() > SameMotion * r.norm() * g.norm())
   {
     const Eigen::Matrix3d relative = rotationOfG.transpose() * RotationFromVector(r);
-    // Whole laps about axes that differ by the rounding of users' numbers leave
+    // Full turns about axes that differ by the rounding of users' numbers leave
     // no rotation to take an axis from.
-    const bool areLaps = vector.norm() > 1.0 && VectorFromRotation(relative).norm() < 1e-5;
-    vector = areLaps ? vector : VectorFromRotation(relative, vector);
+    const bool areFullTurns = vector.norm() > 1.0 && VectorFromRotation(relative).norm() < 1e-5;
+    vector = areFullTurns ? vector : VectorFromRotation(relative, vector);
   }
   return vector.norm() > SameMotion ? vector : Eigen::Vector3d(Eigen::Vector3d::Zero());
 }
@@ -50,7 +50,7 @@ Eigen::Vector3d NearestTurn(const Eigen::Vector3d& vector, const Eigen::Vector3d
   return (other - guess).norm() < (1.0 - 1e-9) * (vector - guess).norm() ? other : vector;
 }
 
-/// Whether two handles' motions are the same to rounding, laps included; `size`
+/// Whether two handles' motions are the same to rounding, full turns included; `size`
 /// is that of the surface.
 bool AreSame(const HandleMotion& a, const HandleMotion& b, double size)
 {

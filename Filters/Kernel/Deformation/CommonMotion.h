@@ -10,7 +10,7 @@ struct RigidMotion
 {
   Eigen::Matrix3d Rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d Translation = Eigen::Vector3d::Zero();
-  /// Of Rotation, in radians: with the laps of the handle it was taken from.
+  /// Of Rotation, in radians: with the full turns of the handle it was taken from.
   Eigen::Vector3d RotationVector = Eigen::Vector3d::Zero();
 };
 
@@ -28,7 +28,7 @@ struct RigidMotion
 /// targets differ from point to point, the rigid motion that fits them best.
 ///
 /// Rotations that are known as matrices only (HandleMotion::CountsTurns off) say
-/// nothing about laps and may be taken the one way around or the other. What
+/// nothing about full turns and may be taken the one way around or the other. What
 /// twists the surface is the turn between handles that share a region, so the
 /// vectors are chosen together: along a tree of least turns (Prim) from the
 /// pinned handles, or from the lowest id, each handle takes the vector nearest

@@ -71,7 +71,7 @@ struct HandleMotion
   Eigen::Matrix3d Linear = Eigen::Matrix3d::Identity();
   Eigen::Vector3d Translation = Eigen::Vector3d::Zero();
   /// Axis times angle in radians of the rotation in Linear, of any length: more
-  /// than 2 pi means laps. Used by methods that see rotations as angles.
+  /// than 2 pi means full turns. Used by methods that see rotations as angles.
   Eigen::Vector3d RotationVector = Eigen::Vector3d::Zero();
   /// Whether RotationVector, or HandleTargets::RotationVectors at this handle, is
   /// as the user gave it. Off: it was found from a matrix, and other vectors of

@@ -9,7 +9,7 @@
 namespace cartan
 {
 /// Curvatures per vertex, positive where the surface bends away from its
-/// normal: a sphere of radius R that is oriented outwards has Mean = Maximum =
+/// normal: a sphere of radius R that is oriented outward has Mean = Maximum =
 /// Minimum = 1 / R and Gaussian = 1 / R^2.
 ///
 /// Never NaN. All zero, and the directions zero vectors, where there is nothing
@@ -48,7 +48,7 @@ struct Curvatures
 ///
 /// Where the points do not determine A (two rows, such as the side of a
 /// cylinder without inner points) more rings are taken. Where those do not help
-/// either, A is fitted to the normal curvatures 2 h / |p|^2 towards the nearest
+/// either, A is fitted to the normal curvatures 2 h / |p|^2 toward the nearest
 /// points in the plane normal to the mean of the triangles' normals: edges
 /// between two rows count as straight. That is right for cylinders and cones
 /// and a guess elsewhere, and IsDetermined says so.

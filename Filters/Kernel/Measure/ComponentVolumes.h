@@ -9,7 +9,7 @@ namespace cartan
 {
 struct ComponentVolume
 {
-  /// Positive when the triangles are oriented outwards, negative inside out (or
+  /// Positive when the triangles are oriented outward, negative inside out (or
   /// for the wall of a cavity). Computed about the component's own center, so
   /// that a surface far from the origin keeps its digits. Means nothing when
   /// the component is not closed.

@@ -30,8 +30,8 @@ struct OutwardOrientation
   int NumberOfReversedComponents = 0;
 };
 
-/// Turns closed components over so that they face outwards, or, with
-/// `alternatesNested`, a component inside an odd number of others inwards: it is
+/// Turns closed components over so that they face outward, or, with
+/// `alternatesNested`, a component inside an odd number of others inward: it is
 /// the wall of a cavity. A component is closed when each of its edges has two
 /// triangles of opposite direction. Others keep their orientation, and so do
 /// components without volume (below 1e-9 area^(3/2)).

@@ -14,7 +14,7 @@ namespace cartan
 {
 /// The steps of RepairSurface, in their order. Those that are on by default make
 /// any triangles an oriented manifold, and change nothing where they are one
-/// whose borders are apart and whose closed components face outwards.
+/// whose borders are apart and whose closed components face outward.
 struct RepairOptions
 {
   /// Merges points on borders and edges of more than two triangles, and ends of
@@ -26,7 +26,7 @@ struct RepairOptions
   bool Orients = true;            ///< neighbors alike
   bool CutsNonManifold = true;
   bool OrientsOutwards = true;    ///< closed components
-  bool AlternatesNested = true;   ///< walls of cavities inwards, see OrientOutwards
+  bool AlternatesNested = true;   ///< walls of cavities inward, see OrientOutwards
   double SmallestComponent = 0.0; ///< components below this part of the area are removed
   HoleOptions Holes;              ///< none filled by default
   bool FlipsEdges = false;
