@@ -5,10 +5,10 @@
 #   layers   what may include what
 #   doxygen  the class reference, without warnings
 #   tests    Utilities/test.sh: all tests of a release build, warnings are errors
-#   tidy     clang-tidy on the kernel; needs the build of `tests`
+#   tidy     clang-tidy on the kernel
 #   asan     kernel and filter tests with AddressSanitizer and UndefinedBehaviorSanitizer,
 #            without plugin, Python and CHOLMOD
-#   tsan     filter tests with ThreadSanitizer and VTK's own threads
+#   tsan     filter tests with ThreadSanitizer and VTK's STDThread backend
 #
 # A stage that fails, or cannot run, does not stop the others. The time of each is
 # printed. The last line counts all tests, and as one each stage that has no tests.
@@ -48,12 +48,13 @@ tests() { Utilities/test.sh; }
 
 tidy()
 {
-  need run-clang-tidy-14
-  if [ ! -e build/compile_commands.json ]; then
-    echo "This stage cannot run: Utilities/test.sh has not configured build/."
-    return 1
-  fi
-  run-clang-tidy-14 -quiet -p build -j "$(nproc)" "$PWD/Filters/Kernel/"
+  need clang-tidy-14 git
+  # The commands of the compiler; nothing is built.
+  cmake --preset release > /dev/null
+  # The number of warnings that it then does not show is that of Eigen's.
+  git ls-files -z --cached --others --exclude-standard -- 'Filters/Kernel/*.cxx' |
+    xargs -0 -n 1 -P "$(nproc)" clang-tidy-14 --quiet -p build 2>&1 |
+    sed '/^[0-9]* warnings\? generated\.$/d'
 }
 
 asan() { sanitizer asan; }
@@ -64,7 +65,7 @@ sanitizer()
 {
   cmake --preset "$1"
   cmake --build --preset "$1" --parallel "$(nproc)"
-  ctest --preset "$1" --parallel "$(nproc)"
+  ctest --preset "$1" --no-tests=error --parallel "$(nproc)"
 }
 
 passed=0
