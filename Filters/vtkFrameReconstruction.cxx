@@ -348,9 +348,9 @@ void vtkFrameReconstruction::Execute(cartan::FilterRun& run)
 
   const cartan::Transitions transitions = cartan::TransitionsFromForms(mesh, forms,
     static_cast<cartan::TransitionMethod>(this->TransitionMethod), context.Part(0.1, 0.2));
-  cartan::ConstrainedSolver frameSolver;
+  cartan::AnchoredSystem frameSystem;
   cartan::Matrices frames = cartan::SolveFrames(mesh, transitions, constraints.IsFixed,
-    std::move(constraints.Frames), frameSolver, context.Part(0.2, 0.7));
+    std::move(constraints.Frames), frameSystem, context.Part(0.2, 0.7));
   if (this->ProjectFrames)
   {
     for (int v = 0; v < mesh.NumberOfVertices(); ++v)
@@ -358,10 +358,9 @@ void vtkFrameReconstruction::Execute(cartan::FilterRun& run)
       cartan::MatrixAt(frames, v) = cartan::ProjectOnRotations(cartan::MatrixAt(frames, v));
     }
   }
-  cartan::ConstrainedSolver positionSolver;
   const cartan::Points positions =
     cartan::SolvePositions(mesh, frames, cartan::RingCoordinates(mesh, forms), constraints.IsFixed,
-      std::move(constraints.Positions), positionSolver, context.Part(0.7, 0.95));
+      std::move(constraints.Positions), context.Part(0.7, 0.95));
   cartan::WriteReconstruction(*surface, positions, input, run.Output(), context);
   cartan::AddFrameArrays(run.Output(), frames);
   context.Report(1.0);

@@ -9,7 +9,6 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
-using cartan::ConstrainedSolver;
 using cartan::DiscreteForms;
 using cartan::Matrices;
 using cartan::MatrixAt;
@@ -90,12 +89,11 @@ Reconstruction Reconstruct(const TriangleMesh& mesh, const DiscreteForms& forms,
   MatrixAt(frames, seed) = frame;
   Points positions = Points::Zero(mesh.NumberOfVertices(), 3);
   positions.row(seed) = position.transpose();
-  ConstrainedSolver frameSolver;
-  ConstrainedSolver positionSolver;
+  cartan::AnchoredSystem frameSystem;
   frames = cartan::SolveFrames(
-    mesh, cartan::TransitionsFromForms(mesh, forms, method), isFixed, frames, frameSolver);
-  positions = cartan::SolvePositions(
-    mesh, frames, cartan::RingCoordinates(mesh, forms), isFixed, positions, positionSolver);
+    mesh, cartan::TransitionsFromForms(mesh, forms, method), isFixed, frames, frameSystem);
+  positions =
+    cartan::SolvePositions(mesh, frames, cartan::RingCoordinates(mesh, forms), isFixed, positions);
   return { frames, positions };
 }
 
@@ -201,8 +199,8 @@ TEST(SolveFrames, IsTheLeastSquaresSolutionOfInconsistentEquations)
   Matrices frames = Matrices::Zero(mesh.NumberOfVertices(), 9);
   MatrixAt(frames, 0) = shapes::RandomRigidMotion(1).Rotation;
   MatrixAt(frames, 12) = shapes::RandomRigidMotion(2).Rotation;
-  ConstrainedSolver solver;
-  const Matrices result = cartan::SolveFrames(mesh, transitions, isFixed, frames, solver);
+  cartan::AnchoredSystem system;
+  const Matrices result = cartan::SolveFrames(mesh, transitions, isFixed, frames, system);
 
   const Eigen::MatrixXd equations = FrameEquations(mesh, transitions);
   std::vector<char> isFixedUnknown(3 * mesh.NumberOfVertices());
@@ -232,9 +230,7 @@ TEST(SolvePositions, IsTheLeastSquaresSolutionOfEq5)
     Points::NullaryExpr(mesh.NumberOfDirectedEdges(), 3, [&random]() { return random(); });
   std::vector<char> isFixed(mesh.NumberOfVertices(), 0);
   isFixed[3] = isFixed[20] = 1;
-  ConstrainedSolver solver;
-  const Points result =
-    cartan::SolvePositions(mesh, frames, ring, isFixed, shape.Positions, solver);
+  const Points result = cartan::SolvePositions(mesh, frames, ring, isFixed, shape.Positions);
 
   Eigen::MatrixXd equations =
     Eigen::MatrixXd::Zero(mesh.NumberOfDirectedEdges(), mesh.NumberOfVertices());
@@ -358,9 +354,8 @@ TEST(Reconstruction, LeavesUnusedVerticesAlone)
   const DiscreteForms forms = cartan::ComputeDiscreteForms(mesh, shape.Positions, frames);
   std::vector<char> isFixed(44, 0);
   isFixed[0] = 1;
-  ConstrainedSolver solver;
   const Points result = cartan::SolvePositions(
-    mesh, frames, cartan::RingCoordinates(mesh, forms), isFixed, shape.Positions, solver);
+    mesh, frames, cartan::RingCoordinates(mesh, forms), isFixed, shape.Positions);
   EXPECT_EQ(result.bottomRows(2), shape.Positions.bottomRows(2));
   EXPECT_LT((result - shape.Positions).norm(), 1e-13);
 }

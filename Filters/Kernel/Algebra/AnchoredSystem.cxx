@@ -8,6 +8,13 @@
 
 namespace cartan
 {
+Anchors Anchors::Hard(std::vector<char> isHard)
+{
+  Anchors anchors;
+  anchors.IsHard = std::move(isHard);
+  return anchors;
+}
+
 Anchors Anchors::After(int free, int size)
 {
   Anchors anchors;
@@ -72,13 +79,14 @@ void AnchoredSystem::Solve(
     return;
   }
   Field complete = rightHandSide;
-  if (this->RightHandSide.size())
+  if (this->RightHandSide.size() && rightHandSide.size())
   {
     complete = this->RightHandSide * rightHandSide;
   }
   if (this->Stiffness.size())
   {
-    complete += this->Stiffness.asDiagonal() * values;
+    const auto pull = this->Stiffness.asDiagonal() * values;
+    complete = complete.size() ? Field(complete + pull) : Field(pull);
   }
   this->Solver.Solve(complete, values);
 }

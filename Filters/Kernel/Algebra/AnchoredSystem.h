@@ -12,6 +12,9 @@ struct Anchors
   Eigen::VectorXd Stiffness; ///< empty or #U: s > 0 adds s |x - t|^2, see AnchoredSystem
   std::vector<int> Vertices; ///< empty or #U: the vertex that a message names for an unknown
 
+  /// Hard where `isHard` (#U) is non-zero.
+  static Anchors Hard(std::vector<char> isHard);
+
   /// The first `free` of the unknowns are free, the others hard.
   static Anchors After(int free, int size);
 
@@ -57,6 +60,18 @@ public:
   /// t of hard and soft anchors and gets x.
   void Solve(const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const;
 
+  /// The same with b = 0: free unknowns get the values between the anchors'.
+  void Interpolate(Eigen::Ref<Field> values) const { this->Solve(Field(), values); }
+
+  /// The free unknowns' x for a right-hand side to which all anchors' shares are
+  /// added already: #free x k each. Valid until the next solve.
+  Eigen::Map<const Eigen::MatrixXd> SolveFree(
+    const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const
+  {
+    return this->Solver.SolveFree(rightHandSide);
+  }
+
+  /// In increasing order.
   const std::vector<int>& GetFree() const { return this->Solver.GetFree(); }
   int GetNumberOfFactorizations() const { return this->Solver.GetNumberOfFactorizations(); }
   std::size_t GetBytes() const;

@@ -227,7 +227,7 @@ void ConstrainedSolver::Solve(
   const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const
 {
   Eigen::MatrixXd reduced = -(this->Coupling * values);
-  for (std::size_t i = 0; i < this->Free.size(); ++i)
+  for (std::size_t i = 0; rightHandSide.size() && i < this->Free.size(); ++i)
   {
     reduced.row(i) += rightHandSide.row(this->Free[i]);
   }

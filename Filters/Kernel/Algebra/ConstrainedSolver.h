@@ -49,8 +49,8 @@ public:
   Eigen::Map<const Eigen::MatrixXd> SolveFree(
     const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const;
 
-  /// The convenient form: `rightHandSide` (b, #U x k) and `values` (#U x k), of
-  /// which the fixed rows are read and the free rows are written.
+  /// The convenient form: `rightHandSide` (b, #U x k; empty for zero) and `values`
+  /// (#U x k), of which the fixed rows are read and the free rows are written.
   void Solve(const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const;
 
   /// How many numeric and symbolic factorizations there have been.

@@ -376,7 +376,7 @@ void GradientSystem::SolveColumns()
   // For what changes: no motion leaves the rest shape to the bit.
   const Field& rest = this->Gradients->RestValues();
   this->Values -= rest;
-  this->System.Solve(Field::Zero(rest.rows(), 3), this->Values);
+  this->System.Interpolate(this->Values);
   this->Values += rest;
 }
 
@@ -386,8 +386,7 @@ void GradientSystem::ComputeDragFields(const HandleProblem& problem)
   const int numberOfMoving = static_cast<int>(problem.Moving.size());
   // Handle k in its rest place and all others at the origin, then handle k all
   // in one place.
-  const Field zero = Field::Zero(gradients.NumberOfColumns(), 4 * numberOfMoving);
-  Field fields = zero;
+  Field fields = Field::Zero(gradients.NumberOfColumns(), 4 * numberOfMoving);
   for (int column = 0; column < gradients.NumberOfPositions(); ++column)
   {
     const int v = gradients.Vertex(column);
@@ -409,7 +408,7 @@ void GradientSystem::ComputeDragFields(const HandleProblem& problem)
     }
     column += 3;
   }
-  this->System.Solve(zero, fields);
+  this->System.Interpolate(fields);
   const std::vector<int>& unknowns = this->System.GetFree();
   this->DragFields.resize(static_cast<Eigen::Index>(unknowns.size()), fields.cols());
   for (std::size_t i = 0; i < unknowns.size(); ++i)

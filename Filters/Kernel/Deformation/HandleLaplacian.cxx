@@ -67,51 +67,6 @@ std::vector<char> HeldVertices(
   }
   return isHeld;
 }
-
-/// The rows of the unknowns in the system over all locals, and by symmetry the
-/// columns of held ones.
-SparseMatrix SystemMatrix(const HandleLaplacian& laplacian)
-{
-  const int numberOfUnknowns = laplacian.NumberOfUnknowns();
-  const int size = laplacian.NumberOfLocals();
-  SparseMatrix matrix(size, size);
-  // A vertex has six neighbors in the mean.
-  matrix.reserve(7 * static_cast<Eigen::Index>(size));
-  std::vector<std::vector<std::pair<int, double>>> heldColumns(size - numberOfUnknowns);
-  std::vector<std::pair<int, double>> column;
-  for (int i = 0; i < numberOfUnknowns; ++i)
-  {
-    column.clear();
-    double sum = 0.0;
-    for (const auto* edge = laplacian.EdgesBegin(i); edge != laplacian.EdgesEnd(i); ++edge)
-    {
-      column.emplace_back(edge->Neighbor, -edge->Weight);
-      sum += edge->Weight;
-      if (edge->Neighbor >= numberOfUnknowns)
-      {
-        heldColumns[edge->Neighbor - numberOfUnknowns].emplace_back(i, -edge->Weight);
-      }
-    }
-    column.emplace_back(i, sum);
-    std::sort(column.begin(), column.end());
-    matrix.startVec(i);
-    for (const auto& [row, value] : column)
-    {
-      matrix.insertBack(row, i) = value;
-    }
-  }
-  for (std::size_t held = 0; held < heldColumns.size(); ++held)
-  {
-    const int c = numberOfUnknowns + static_cast<int>(held);
-    matrix.startVec(c);
-    for (const auto& [row, value] : heldColumns[held])
-    {
-      matrix.insertBack(row, c) = value;
-    }
-  }
-  matrix.finalize();
-  return matrix;
-}
 }
 
 std::vector<int> MovingHandleOfVertices(const HandleProblem& problem)
@@ -201,7 +156,7 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
   const std::shared_ptr<const Eigen::VectorXd>& edgeWeights, Hold hold, SolverBackend backend,
   const ExecutionContext& context)
   : MovingCount(static_cast<int>(problem.Moving.size()))
-  , Solver(backend)
+  , System(backend)
 {
   const TriangleMesh& mesh = *problem.Mesh;
   const int numberOfVertices = mesh.NumberOfVertices();
@@ -243,13 +198,21 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
   }
   context.Report(0.1);
 
-  std::vector<char> isFixed(this->NumberOfLocals(), 0);
-  std::fill(isFixed.begin() + this->UnknownCount, isFixed.end(), 1);
-  Eigen::VectorXd stiffness = 0.5 *
-    Eigen::Map<const Eigen::VectorXd>(
-      this->SquaredSoftWeights.data(), static_cast<Eigen::Index>(this->SquaredSoftWeights.size()));
-  this->Solver.Factorize(
-    SystemMatrix(*this), isFixed, stiffness, this->Vertices, context.Part(0.1, 1.0));
+  this->System.Factorize(
+    Laplacian(mesh, *edgeWeights, this->Vertices), this->GetAnchors(), context.Part(0.1, 1.0));
+}
+
+Anchors HandleLaplacian::GetAnchors() const
+{
+  Anchors anchors = Anchors::After(this->UnknownCount, this->NumberOfLocals());
+  anchors.Vertices = this->Vertices;
+  const Eigen::Map<const Eigen::VectorXd> soft(
+    this->SquaredSoftWeights.data(), static_cast<Eigen::Index>(this->SquaredSoftWeights.size()));
+  if (!soft.isZero(0.0))
+  {
+    anchors.Stiffness = 0.5 * soft;
+  }
+  return anchors;
 }
 
 std::vector<HandleLaplacian::Triangle> HandleLaplacian::Triangles(
@@ -277,31 +240,15 @@ std::vector<HandleLaplacian::Triangle> HandleLaplacian::Triangles(
 
 Field HandleLaplacian::HarmonicFields() const
 {
-  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(this->UnknownCount, this->MovingCount);
-  for (int i = 0; i < this->UnknownCount; ++i)
-  {
-    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
-    {
-      const int handle = this->MovingHandles[edge->Neighbor];
-      if (edge->Neighbor >= this->UnknownCount && handle >= 0)
-      {
-        rightHandSide(i, handle) += edge->Weight;
-      }
-    }
-    if (this->MovingHandles[i] >= 0)
-    {
-      rightHandSide(i, this->MovingHandles[i]) += 0.5 * this->SquaredSoftWeights[i];
-    }
-  }
   Field fields = Field::Zero(this->NumberOfLocals(), this->MovingCount);
-  fields.topRows(this->UnknownCount) = this->Solve(rightHandSide);
-  for (int i = this->UnknownCount; i < this->NumberOfLocals(); ++i)
+  for (int i = 0; i < this->NumberOfLocals(); ++i)
   {
     if (this->MovingHandles[i] >= 0)
     {
       fields(i, this->MovingHandles[i]) = 1.0;
     }
   }
+  this->System.Interpolate(fields);
   return fields;
 }
 
@@ -309,31 +256,15 @@ Field HandleLaplacian::Spread(
   int components, const std::function<void(int local, double* values)>& target) const
 {
   Field fields = Field::Zero(this->NumberOfLocals(), components);
-  for (int i = this->UnknownCount; i < this->NumberOfLocals(); ++i)
+  for (int i = 0; i < this->NumberOfLocals(); ++i)
   {
-    if (this->MovingHandles[i] >= 0)
+    const bool isHeld = i >= this->UnknownCount || this->SquaredSoftWeights[i] > 0.0;
+    if (this->MovingHandles[i] >= 0 && isHeld)
     {
       target(i, fields.row(i).data());
     }
   }
-  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(this->UnknownCount, components);
-  Eigen::RowVectorXd soft(components);
-  for (int i = 0; i < this->UnknownCount; ++i)
-  {
-    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
-    {
-      if (edge->Neighbor >= this->UnknownCount)
-      {
-        rightHandSide.row(i) += edge->Weight * fields.row(edge->Neighbor);
-      }
-    }
-    if (this->MovingHandles[i] >= 0 && this->SquaredSoftWeights[i] > 0.0)
-    {
-      target(i, soft.data());
-      rightHandSide.row(i) += 0.5 * this->SquaredSoftWeights[i] * soft;
-    }
-  }
-  fields.topRows(this->UnknownCount) = this->Solve(rightHandSide);
+  this->System.Interpolate(fields);
   return fields;
 }
 }

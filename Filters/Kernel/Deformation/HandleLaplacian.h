@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Algebra/ConstrainedSolver.h"
+#include "Algebra/AnchoredSystem.h"
 #include "Deformation/HandleProblem.h"
 
 #include <functional>
@@ -71,8 +71,11 @@ public:
   int Vertex(int local) const { return this->Vertices[local]; }
   int MovingHandle(int local) const { return this->MovingHandles[local]; }
 
-  /// w^2 of a softly held unknown, 0 elsewhere. Its half is the stiffness in L,
-  /// because L stands for both directions of each edge.
+  /// What holds the locals: the unknowns softly with w^2 / 2, because L stands for
+  /// both directions of each edge, all others hard.
+  Anchors GetAnchors() const;
+
+  /// w^2 of a softly held unknown, 0 elsewhere.
   double SquaredSoftWeight(int local) const { return this->SquaredSoftWeights[local]; }
 
   /// The part of the one-ring of an unknown local vertex: its edges to local
@@ -118,14 +121,14 @@ public:
   Eigen::Map<const Eigen::MatrixXd> Solve(
     const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const
   {
-    return this->Solver.SolveFree(rightHandSide);
+    return this->System.SolveFree(rightHandSide);
   }
 
-  int GetNumberOfFactorizations() const { return this->Solver.GetNumberOfFactorizations(); }
+  int GetNumberOfFactorizations() const { return this->System.GetNumberOfFactorizations(); }
 
   std::size_t GetBytes() const
   {
-    return this->Solver.GetBytes() +
+    return this->System.GetBytes() +
       TotalBytes(this->Vertices, this->MovingHandles, this->SquaredSoftWeights, this->EdgeOffsets,
         this->Edges);
   }
@@ -138,6 +141,6 @@ private:
   int MovingCount = 0;
   std::vector<int> EdgeOffsets;
   std::vector<Edge> Edges;
-  ConstrainedSolver Solver;
+  AnchoredSystem System;
 };
 }

@@ -197,7 +197,7 @@ void LaplacianDeformer::SolveImplicitly(const Points& displacements)
   // Three unknowns side by side for each local vertex. The rest fulfills the
   // equations, so displacements have no right-hand side.
   Field unknowns = Eigen::Map<const Field>(locals.data(), locals.size(), 1);
-  this->ImplicitSystem.Solve(Field::Zero(unknowns.rows(), 1), unknowns);
+  this->ImplicitSystem.Interpolate(unknowns);
   for (int row = 0; row < this->NumberOfRows(); ++row)
   {
     const std::vector<int>& ring = this->Rings[row];

@@ -132,21 +132,8 @@ void MultiresolutionDeformer::PrepareSpreading(const ExecutionContext& context)
         "a base, such as Rotation Invariant Deformation.");
   }
   anchors.Vertices.assign(vertices.begin(), vertices.begin() + numberOfLocals);
-  std::vector<Eigen::Triplet<double>> entries;
-  const SparseMatrix& laplacian = this->System.GetLaplacian();
-  for (int i = 0; i < numberOfLocals; ++i)
-  {
-    for (SparseMatrix::InnerIterator entry(laplacian, i); entry; ++entry)
-    {
-      if (entry.index() != i && entry.index() < numberOfLocals)
-      {
-        entries.emplace_back(static_cast<int>(entry.index()), i, -1.0);
-        entries.emplace_back(i, i, 1.0);
-      }
-    }
-  }
-  SparseMatrix graph(numberOfLocals, numberOfLocals);
-  graph.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges());
+  const SparseMatrix graph = Laplacian(mesh, ones, anchors.Vertices);
   this->Spreading.Factorize(graph, std::move(anchors), context);
 }
 
@@ -172,7 +159,7 @@ void MultiresolutionDeformer::FitFrames(
   {
     return;
   }
-  this->Spreading.Solve(Field::Zero(numberOfFrames, 9), this->Changes);
+  this->Spreading.Interpolate(this->Changes);
   for (const int i : this->Spreading.GetFree())
   {
     Eigen::Map<Eigen::Matrix3d> change = MatrixAt(this->Changes, i);

@@ -19,7 +19,7 @@ PolyharmonicSystem::PolyharmonicSystem(
   this->NumberLocals(mesh, isUnknown, order);
 
   const LaplaceOperator laplace(mesh, *problem.Rest, problem.Weights, context.Part(0.0, 0.1));
-  this->Laplacian = laplace.Restricted(mesh, this->Vertices);
+  this->Laplacian = cartan::Laplacian(mesh, laplace.GetWeights(), this->Vertices);
   this->InverseMass.resize(this->NumberOfLocals());
   this->Held = Anchors::After(this->NumberOfUnknowns(), this->NumberOfLocals());
   this->Held.Vertices = this->Vertices;

@@ -12,6 +12,12 @@ namespace cartan
 {
 namespace
 {
+/// eta = 2 tan(angle / 4) axis of a rotation vector.
+Eigen::Vector3d ConformalCoordinates(const Eigen::Vector3d& rotation)
+{
+  const double angle = rotation.norm();
+  return (angle > 0.0 ? 2.0 * std::tan(angle / 4.0) / angle : 0.0) * rotation;
+}
 
 /// W_T, the sum over the corners of 1 / (4 + |eta|^2)^2.
 double ConformalWeight(const HandleLaplacian::Triangle& triangle, const Field& eta)
@@ -43,7 +49,7 @@ ShapePreservingDeformer::ShapePreservingDeformer(
   HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
   : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.9))
   , Harmonic(this->Problem, this->Frames)
-  , IterationSolver(backend)
+  , IterationSystem(backend)
 {
   context.Report(1.0);
 }
@@ -89,85 +95,97 @@ void ShapePreservingDeformer::ComputeTransforms(
   this->Iterations = 0;
   this->Residual = 0.0;
   this->Converged = true;
-  const HandleLaplacian& frames = *this->Frames;
-  for (const HandleVertex& held : this->HandleVertices)
-  {
-    MatrixAt(this->Transforms, held.Vertex) = HandleTransform(targets, held.Vertex, held.Handle);
-  }
-
-  Eigen::Vector3d axis;
   std::vector<Eigen::Vector3d> rotationVectors;
   for (const HandleVertex& held : this->HandleVertices)
   {
+    MatrixAt(this->Transforms, held.Vertex) = HandleTransform(targets, held.Vertex, held.Handle);
     rotationVectors.push_back(this->RotationVector(targets, held));
   }
+  Eigen::Vector3d axis;
   this->SharedAxis = FindSharedAxis(rotationVectors, axis);
   if (this->SharedAxis)
   {
-    const Field angle = this->Spread(
-      targets, 1,
-      [&](const HandleVertex& held, double* value)
-      { *value = this->RotationVector(targets, held).dot(axis); },
-      context);
-    context.For(frames.NumberOfUnknowns(),
-      [&](int begin, int end)
-      {
-        for (int i = begin; i < end; ++i)
-        {
-          MatrixAt(this->Transforms, frames.Vertex(i)) =
-            Eigen::AngleAxisd(angle(i, 0), axis).toRotationMatrix();
-        }
-      });
+    this->BlendAngles(targets, axis, context);
   }
   else
   {
-    IdSample tooLarge;
-    for (const HandleVertex& held : this->HandleVertices)
-    {
-      if (this->RotationVector(targets, held).norm() >= FullTurn * (1.0 - 1e-9))
-      {
-        tooLarge.Add(held.Vertex);
-      }
-    }
-    if (!tooLarge.IsEmpty())
-    {
-      throw Error(ErrorCode::BadInput,
-        "The rotations have different axes, and " +
-          tooLarge.Describe("handle point turns", "handle points turn") +
-          " by 360 degrees or more, which only rotations about one axis can do: give all handles "
-          "the same axis, or turn in several steps.");
-    }
-    Field eta = this->Spread(
-      targets, 3,
-      [&](const HandleVertex& held, double* value)
-      {
-        const Eigen::Vector3d rotation = this->RotationVector(targets, held);
-        const double angle = rotation.norm();
-        Eigen::Map<Eigen::Vector3d>(value, 3) = angle > 0.0
-          ? Eigen::Vector3d(2.0 * std::tan(angle / 4.0) / angle * rotation)
-          : Eigen::Vector3d(Eigen::Vector3d::Zero());
-      },
-      context);
-    this->Iterations = 1;
-    if (this->MaximumIterations > 1)
-    {
-      eta = this->Iterate(std::move(eta), context);
-    }
-    context.For(frames.NumberOfUnknowns(),
-      [&](int begin, int end)
-      {
-        for (int i = begin; i < end; ++i)
-        {
-          const Eigen::Vector3d direction = eta.row(i);
-          const double length = direction.norm();
-          MatrixAt(this->Transforms, frames.Vertex(i)) = RotationFromVector(length > 0.0
-              ? Eigen::Vector3d(4.0 * std::atan(length / 2.0) / length * direction)
-              : direction);
-        }
-      });
+    this->BlendRotations(targets, context);
   }
-
   this->BlendStretches(targets, context);
+}
+
+/// Eq. 6.
+void ShapePreservingDeformer::BlendAngles(
+  const HandleTargets& targets, const Eigen::Vector3d& axis, const ExecutionContext& context)
+{
+  const HandleLaplacian& frames = *this->Frames;
+  const Field angle = this->Spread(
+    targets, 1,
+    [&](const HandleVertex& held, double* value)
+    { *value = this->RotationVector(targets, held).dot(axis); },
+    context);
+  context.For(frames.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        MatrixAt(this->Transforms, frames.Vertex(i)) =
+          Eigen::AngleAxisd(angle(i, 0), axis).toRotationMatrix();
+      }
+    });
+}
+
+/// Eq. 8.
+void ShapePreservingDeformer::BlendRotations(
+  const HandleTargets& targets, const ExecutionContext& context)
+{
+  this->RequireLessThanTurns(targets);
+  const HandleLaplacian& frames = *this->Frames;
+  Field eta = this->Spread(
+    targets, 3,
+    [&](const HandleVertex& held, double* value)
+    {
+      Eigen::Map<Eigen::Vector3d>(value, 3) =
+        ConformalCoordinates(this->RotationVector(targets, held));
+    },
+    context);
+  this->Iterations = 1;
+  if (this->MaximumIterations > 1)
+  {
+    eta = this->Iterate(std::move(eta), targets, context);
+  }
+  context.For(frames.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        const Eigen::Vector3d direction = eta.row(i);
+        const double length = direction.norm();
+        MatrixAt(this->Transforms, frames.Vertex(i)) = RotationFromVector(length > 0.0
+            ? Eigen::Vector3d(4.0 * std::atan(length / 2.0) / length * direction)
+            : direction);
+      }
+    });
+}
+
+void ShapePreservingDeformer::RequireLessThanTurns(const HandleTargets& targets) const
+{
+  IdSample tooLarge;
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    if (this->RotationVector(targets, held).norm() >= FullTurn * (1.0 - 1e-9))
+    {
+      tooLarge.Add(held.Vertex);
+    }
+  }
+  if (!tooLarge.IsEmpty())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The rotations have different axes, and " +
+        tooLarge.Describe("handle point turns", "handle points turn") +
+        " by 360 degrees or more, which only rotations about one axis can do: give all handles "
+        "the same axis, or turn in several steps.");
+  }
 }
 
 void ShapePreservingDeformer::BlendStretches(
@@ -204,106 +222,110 @@ void ShapePreservingDeformer::BlendStretches(
   }
 }
 
-double ShapePreservingDeformer::Energy(const Field& eta) const
+/// E(eta) and what the soft anchors add to it: the system is its gradient.
+double ShapePreservingDeformer::Energy(
+  const Field& eta, const Eigen::VectorXd& stiffness, const Field& targets) const
 {
   double energy = 0.0;
   for (const HandleLaplacian::Triangle& triangle : this->Triangles)
   {
     energy += ConformalWeight(triangle, eta) * DirichletEnergy(triangle, eta);
   }
-  return energy;
+  return stiffness.size() ? energy + stiffness.dot((eta - targets).rowwise().squaredNorm())
+                          : energy;
 }
 
-Field ShapePreservingDeformer::Iterate(Field eta, const ExecutionContext& context)
+/// Eq. 8 with the weights and the right-hand side at `eta`.
+SparseMatrix ShapePreservingDeformer::Linearize(const Field& eta, Field& rightHandSide) const
 {
-  if (this->Triangles.empty())
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(12 * this->Triangles.size());
+  rightHandSide.setZero(eta.rows(), 3);
+  for (const HandleLaplacian::Triangle& triangle : this->Triangles)
   {
-    this->Triangles = this->Frames->Triangles(this->Problem);
-  }
-  const HandleLaplacian& frames = *this->Frames;
-  const int numberOfLocals = frames.NumberOfLocals();
-  std::vector<char> isFixed(numberOfLocals, 0);
-  std::fill(isFixed.begin() + frames.NumberOfUnknowns(), isFixed.end(), 1);
-  // Soft targets keep their strength relative to the energy near eta = 0,
-  // where W_T is 3/16.
-  Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(numberOfLocals);
-  Field softTargets = Field::Zero(numberOfLocals, 3);
-  for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
-  {
-    stiffness[i] = 3.0 / 16.0 * 0.5 * frames.SquaredSoftWeight(i);
-  }
-  if (stiffness.maxCoeff() > 0.0)
-  {
-    // What draws the harmonic field: s target = L eta + s eta.
-    for (int i = 0; i < frames.NumberOfUnknowns(); ++i)
+    const double weight = ConformalWeight(triangle, eta);
+    const double dirichlet = DirichletEnergy(triangle, eta);
+    for (int c = 0; c < 3; ++c)
     {
-      Eigen::RowVector3d pull = 0.5 * frames.SquaredSoftWeight(i) * eta.row(i);
-      for (const auto* edge = frames.EdgesBegin(i); edge != frames.EdgesEnd(i); ++edge)
-      {
-        pull += edge->Weight * (eta.row(i) - eta.row(edge->Neighbor));
-      }
-      softTargets.row(i) = 3.0 / 16.0 * pull;
+      const int a = triangle.Corners[(c + 1) % 3];
+      const int b = triangle.Corners[(c + 2) % 3];
+      const double value = weight * triangle.Weights[c];
+      entries.emplace_back(a, a, value);
+      entries.emplace_back(b, b, value);
+      entries.emplace_back(a, b, -value);
+      entries.emplace_back(b, a, -value);
+      // d W_T / d eta is -4 eta / (4 + |eta|^2)^3; moved to the right.
+      const int corner = triangle.Corners[c];
+      const double denominator = 4.0 + eta.row(corner).squaredNorm();
+      rightHandSide.row(corner) +=
+        2.0 * dirichlet / (denominator * denominator * denominator) * eta.row(corner);
     }
   }
-  // The energy whose gradient the system is, soft targets included.
-  const auto totalEnergy = [&](const Field& field)
+  SparseMatrix matrix(eta.rows(), eta.rows());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+/// Solves Eq. 8 at `eta` for the next iterate, which has the anchors' values.
+/// False where it cannot: far from a solution, negative cotangents may make the
+/// system indefinite.
+bool ShapePreservingDeformer::Step(const Field& eta, const Anchors& anchors, Field& next)
+{
+  Field rightHandSide;
+  const SparseMatrix matrix = this->Linearize(eta, rightHandSide);
+  try
   {
-    const auto unknown = field.topRows(frames.NumberOfUnknowns());
-    return this->Energy(field) +
-      stiffness.head(frames.NumberOfUnknowns()).dot(unknown.rowwise().squaredNorm()) -
-      2.0 * softTargets.topRows(frames.NumberOfUnknowns()).cwiseProduct(unknown).sum();
-  };
+    this->IterationSystem.Factorize(matrix, anchors);
+    this->IterationSystem.Solve(rightHandSide, next);
+  }
+  catch (const Error& error)
+  {
+    if (error.GetCode() != ErrorCode::SingularSystem)
+    {
+      throw;
+    }
+    return false;
+  }
+  return true;
+}
+
+Field ShapePreservingDeformer::Iterate(
+  Field eta, const HandleTargets& targets, const ExecutionContext& context)
+{
+  const HandleLaplacian& frames = *this->Frames;
+  if (this->Triangles.empty())
+  {
+    this->Triangles = frames.Triangles(this->Problem);
+  }
+  // Soft targets keep their strength relative to the energy near eta = 0,
+  // where W_T is 3/16.
+  Anchors anchors = frames.GetAnchors();
+  anchors.Stiffness *= 3.0 / 16.0;
+  Field goals = eta;
+  for (int i = 0; anchors.Stiffness.size() && i < frames.NumberOfUnknowns(); ++i)
+  {
+    const HandleVertex held{ frames.Vertex(i), frames.MovingHandle(i) };
+    goals.row(i).setZero();
+    if (held.Handle >= 0)
+    {
+      goals.row(i) = ConformalCoordinates(this->RotationVector(targets, held)).transpose();
+    }
+  }
   Field best = eta;
-  double bestEnergy = totalEnergy(eta);
+  double bestEnergy = this->Energy(eta, anchors.Stiffness, goals);
   this->Converged = false;
-  std::vector<Eigen::Triplet<double>> entries;
   for (; this->Iterations < this->MaximumIterations && !this->Converged; ++this->Iterations)
   {
     context.Report(static_cast<double>(this->Iterations) / this->MaximumIterations);
-    entries.clear();
-    Field rightHandSide = softTargets;
-    for (const HandleLaplacian::Triangle& triangle : this->Triangles)
+    Field next = goals;
+    if (!this->Step(eta, anchors, next))
     {
-      const Eigen::Vector3i& corners = triangle.Corners;
-      const double weight = ConformalWeight(triangle, eta);
-      const double dirichlet = DirichletEnergy(triangle, eta);
-      for (int c = 0; c < 3; ++c)
-      {
-        const int a = corners[(c + 1) % 3];
-        const int b = corners[(c + 2) % 3];
-        const double value = weight * triangle.Weights[c];
-        entries.emplace_back(a, a, value);
-        entries.emplace_back(b, b, value);
-        entries.emplace_back(a, b, -value);
-        entries.emplace_back(b, a, -value);
-        // d W_T / d eta is -4 eta / (4 + |eta|^2)^3; moved to the right.
-        const double denominator = 4.0 + eta.row(corners[c]).squaredNorm();
-        rightHandSide.row(corners[c]) +=
-          2.0 * dirichlet / (denominator * denominator * denominator) * eta.row(corners[c]);
-      }
-    }
-    SparseMatrix matrix(numberOfLocals, numberOfLocals);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    Field next = eta;
-    try
-    {
-      this->IterationSolver.Factorize(matrix, isFixed, stiffness);
-      this->IterationSolver.Solve(rightHandSide, next);
-    }
-    catch (const Error& error)
-    {
-      // Far from a solution, negative cotangents may make the system indefinite.
-      if (error.GetCode() != ErrorCode::SingularSystem)
-      {
-        throw;
-      }
       break;
     }
-
     this->Residual =
       (next - eta).cwiseAbs().maxCoeff() / std::max(next.cwiseAbs().maxCoeff(), 1e-300);
     eta = std::move(next);
-    const double energy = totalEnergy(eta);
+    const double energy = this->Energy(eta, anchors.Stiffness, goals);
     if (!(energy < 1e300))
     {
       break;
@@ -316,6 +338,12 @@ Field ShapePreservingDeformer::Iterate(Field eta, const ExecutionContext& contex
       bestEnergy = energy;
     }
   }
+  this->WarnUnlessConverged();
+  return best;
+}
+
+void ShapePreservingDeformer::WarnUnlessConverged()
+{
   if (!this->Converged)
   {
     std::ostringstream warning;
@@ -326,6 +354,5 @@ Field ShapePreservingDeformer::Iterate(Field eta, const ExecutionContext& contex
                "not converge).";
     this->Warning = warning.str();
   }
-  return best;
 }
 }

@@ -54,11 +54,11 @@ public:
   int GetNumberOfFactorizations() const override
   {
     return FrameDeformer::GetNumberOfFactorizations() +
-      this->IterationSolver.GetNumberOfFactorizations();
+      this->IterationSystem.GetNumberOfFactorizations();
   }
   std::size_t GetBytes() const override
   {
-    return FrameDeformer::GetBytes() + this->IterationSolver.GetBytes() +
+    return FrameDeformer::GetBytes() + this->IterationSystem.GetBytes() +
       this->Harmonic.GetBytes() + TotalBytes(this->Triangles);
   }
 
@@ -71,9 +71,16 @@ private:
   Field Spread(const HandleTargets& targets, int components,
     const std::function<void(const HandleVertex&, double*)>& coordinates,
     const ExecutionContext& context) const;
+  void BlendAngles(
+    const HandleTargets& targets, const Eigen::Vector3d& axis, const ExecutionContext& context);
+  void BlendRotations(const HandleTargets& targets, const ExecutionContext& context);
   void BlendStretches(const HandleTargets& targets, const ExecutionContext& context);
-  Field Iterate(Field eta, const ExecutionContext& context);
-  double Energy(const Field& eta) const;
+  void RequireLessThanTurns(const HandleTargets& targets) const;
+  Field Iterate(Field eta, const HandleTargets& targets, const ExecutionContext& context);
+  bool Step(const Field& eta, const Anchors& anchors, Field& next);
+  SparseMatrix Linearize(const Field& eta, Field& rightHandSide) const;
+  double Energy(const Field& eta, const Eigen::VectorXd& stiffness, const Field& targets) const;
+  void WarnUnlessConverged();
 
   int MaximumIterations = 1;
   double Tolerance = 1e-6;
@@ -86,6 +93,6 @@ private:
 
   /// Empty until an iteration needs them.
   std::vector<HandleLaplacian::Triangle> Triangles;
-  ConstrainedSolver IterationSolver;
+  AnchoredSystem IterationSystem;
 };
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/FrameReconstruction.h"
 
+#include "Algebra/ConjugateGradients.h"
 #include "Algebra/SparseProduct.h"
 #include "Differential/Laplacian.h"
 
@@ -19,6 +20,53 @@ std::vector<char> FixUnused(const TriangleMesh& mesh, std::vector<char> isFixed)
     isFixed[v] = isFixed[v] || !mesh.IsUsed(v);
   }
   return isFixed;
+}
+
+/// X_i = F_i^T, one below the other.
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+Columns TransposedFrames(const Matrices& frames)
+{
+  Columns transposed(3 * frames.rows(), 3);
+  for (Eigen::Index v = 0; v < frames.rows(); ++v)
+  {
+    transposed.middleRows<3>(3 * v) = MatrixAt(frames, v).transpose();
+  }
+  return transposed;
+}
+
+void ClearGiven(const std::vector<char>& isGiven, Columns& columns)
+{
+  for (std::size_t v = 0; v < isGiven.size(); ++v)
+  {
+    if (isGiven[v])
+    {
+      columns.middleRows<3>(3 * static_cast<Eigen::Index>(v)).setZero();
+    }
+  }
+}
+
+/// The unknown X_i is S_i^T Y_i in the gauge of the start's frames S_i, where the
+/// frames' matrix is close to 2 L on each of the nine entries of Y.
+Columns Precondition(const Matrices& start, const AnchoredSystem& laplacian,
+  const std::vector<char>& isGiven, const Columns& residual)
+{
+  Field turned(start.rows(), 9);
+  for (Eigen::Index v = 0; v < start.rows(); ++v)
+  {
+    Eigen::Map<Eigen::Matrix3d>(turned.row(v).data()) =
+      MatrixAt(start, v) * residual.middleRows<3>(3 * v);
+  }
+  Field solved = Field::Zero(start.rows(), 9);
+  laplacian.Solve(turned, solved);
+  Columns result(residual.rows(), 3);
+  for (Eigen::Index v = 0; v < start.rows(); ++v)
+  {
+    result.middleRows<3>(3 * v) = 0.5 * MatrixAt(start, v).transpose() *
+      Eigen::Map<const Eigen::Matrix3d>(solved.row(v).data());
+  }
+  ClearGiven(isGiven, result);
+  return result;
 }
 
 /// That of a directed edge, 1 where none are given.
@@ -76,111 +124,53 @@ SparseMatrix FrameMatrix(
 }
 
 Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
-  const std::vector<char>& isFixed, Matrices frames, ConstrainedSolver& solver,
+  const std::vector<char>& isFixed, Matrices frames, AnchoredSystem& system,
   const ExecutionContext& context, const Eigen::VectorXd& weights)
 {
-  const std::vector<char> isFixedVertex = FixUnused(mesh, isFixed);
-  const int numberOfVertices = mesh.NumberOfVertices();
-  std::vector<char> isFixedUnknown(3 * static_cast<std::size_t>(numberOfVertices));
-  std::vector<int> vertices(isFixedUnknown.size());
-  Field transposed(3 * numberOfVertices, 3);
-  for (int v = 0; v < numberOfVertices; ++v)
+  system.Factorize(FrameMatrix(mesh, transitions, weights),
+    Anchors::Hard(FixUnused(mesh, isFixed)).Repeated(3), context);
+  Field solution = TransposedFrames(frames);
+  system.Interpolate(solution);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    std::fill_n(isFixedUnknown.begin() + 3 * static_cast<std::size_t>(v), 3, isFixedVertex[v]);
-    std::fill_n(vertices.begin() + 3 * static_cast<std::size_t>(v), 3, v);
-    transposed.middleRows<3>(3 * v) = MatrixAt(frames, v).transpose();
-  }
-  solver.Factorize(FrameMatrix(mesh, transitions, weights), isFixedUnknown, {}, vertices, context);
-  solver.Solve(Field::Zero(3 * numberOfVertices, 3), transposed);
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
-    MatrixAt(frames, v) = transposed.middleRows<3>(3 * v).transpose();
+    MatrixAt(frames, v) = solution.middleRows<3>(3 * v).transpose();
   }
   return frames;
 }
 
 Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
-  const std::vector<char>& isFixed, Matrices start, const ConstrainedSolver& laplacian, int* steps,
+  const std::vector<char>& isFixed, Matrices start, const AnchoredSystem& laplacian, int* steps,
   const ExecutionContext& context, const Eigen::VectorXd& weights)
 {
-  constexpr double tolerance = 1e-10;
   constexpr int maximumSteps = 1000;
   const std::vector<char> isGiven = FixUnused(mesh, isFixed);
-  const int numberOfVertices = mesh.NumberOfVertices();
   const SparseMatrix matrix = FrameMatrix(mesh, transitions, weights);
-  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-  const auto clearGiven = [&](Columns& columns)
+  const auto apply = [&](const Columns& columns)
   {
-    for (int v = 0; v < numberOfVertices; ++v)
-    {
-      if (isGiven[v])
-      {
-        columns.middleRows<3>(3 * v).setZero();
-      }
-    }
+    Columns image = matrix * columns;
+    ClearGiven(isGiven, image);
+    return image;
   };
-  // The unknown X_i = F_i^T is S_i^T Y_i in the gauge of the start's frames S_i,
-  // where the matrix is close to 2 L on each of the nine entries of Y.
-  Field turned(numberOfVertices, 9);
-  Field solved = Field::Zero(numberOfVertices, 9);
-  const auto precondition = [&](const Columns& residual)
-  {
-    for (int v = 0; v < numberOfVertices; ++v)
-    {
-      Eigen::Map<Eigen::Matrix3d>(turned.data() + 9 * static_cast<Eigen::Index>(v)) =
-        MatrixAt(start, v) * residual.middleRows<3>(3 * v);
-    }
-    laplacian.Solve(turned, solved);
-    Columns result(3 * numberOfVertices, 3);
-    for (int v = 0; v < numberOfVertices; ++v)
-    {
-      result.middleRows<3>(3 * v) = 0.5 * MatrixAt(start, v).transpose() *
-        Eigen::Map<const Eigen::Matrix3d>(solved.data() + 9 * static_cast<Eigen::Index>(v));
-    }
-    clearGiven(result);
-    return result;
-  };
-
-  Columns solution(3 * numberOfVertices, 3);
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
-    solution.middleRows<3>(3 * v) = MatrixAt(start, v).transpose();
-  }
-  Columns residual = -(matrix * solution);
-  clearGiven(residual);
-  Columns preconditioned = precondition(residual);
-  Columns direction = preconditioned;
-  double product = residual.cwiseProduct(preconditioned).sum();
+  Columns solution = TransposedFrames(start);
   // Transitions that fit the start exactly leave rounding only.
-  const double goal = std::max(tolerance * tolerance * product,
-    std::numeric_limits<double>::epsilon() * std::numeric_limits<double>::epsilon() *
-      solution.squaredNorm());
-  int step = 0;
-  while (product > goal)
+  const double rounding = std::numeric_limits<double>::epsilon() * solution.norm();
+  const ConjugateGradientsResult result = ConjugateGradients(
+    solution, Columns(-apply(solution)), apply,
+    [&](const Columns& residual) { return Precondition(start, laplacian, isGiven, residual); },
+    { 1e-10, maximumSteps, rounding * rounding },
+    [&](int step, double) { context.Report(static_cast<double>(step) / maximumSteps); });
+  if (!result.HasConverged)
   {
-    if (++step > maximumSteps)
-    {
-      throw Error(ErrorCode::NotConverged,
-        "The frames of the interpolated surface were not found after " +
-          std::to_string(maximumSteps) +
-          " steps of conjugate gradients: choose Direct or RotationAveraging as FrameSolver.");
-    }
-    Columns image = matrix * direction;
-    clearGiven(image);
-    const double length = product / direction.cwiseProduct(image).sum();
-    solution += length * direction;
-    residual -= length * image;
-    preconditioned = precondition(residual);
-    const double next = residual.cwiseProduct(preconditioned).sum();
-    direction = preconditioned + next / product * direction;
-    product = next;
-    context.Report(static_cast<double>(step) / maximumSteps);
+    throw Error(ErrorCode::NotConverged,
+      "The frames of the interpolated surface were not found after " +
+        std::to_string(maximumSteps) +
+        " steps of conjugate gradients: choose Direct or RotationAveraging as FrameSolver.");
   }
   if (steps)
   {
-    *steps = step;
+    *steps = result.Steps;
   }
-  for (int v = 0; v < numberOfVertices; ++v)
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     if (!isGiven[v])
     {
@@ -215,12 +205,12 @@ Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, co
 }
 
 Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
-  const std::vector<char>& isFixed, Points positions, ConstrainedSolver& solver,
-  const ExecutionContext& context)
+  const std::vector<char>& isFixed, Points positions, const ExecutionContext& context)
 {
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges());
   const std::vector<char> isGiven = FixUnused(mesh, isFixed);
-  solver.Factorize(Laplacian(mesh, ones), isGiven, {}, {}, context);
+  AnchoredSystem system;
+  system.Factorize(Laplacian(mesh, ones), Anchors::Hard(isGiven), context);
 
   // Relative to a fixed position of each component, so that a seed far from the
   // origin costs no digits.
@@ -240,7 +230,7 @@ Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Po
       solution.row(v) = positions.row(v) - positions.row(references[mesh.Component(v)]);
     }
   }
-  solver.Solve(PositionRightHandSide(mesh, frames, ring, context), solution);
+  system.Solve(PositionRightHandSide(mesh, frames, ring, context), solution);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     if (!isGiven[v])

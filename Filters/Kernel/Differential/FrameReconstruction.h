@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Algebra/ConstrainedSolver.h"
+#include "Algebra/AnchoredSystem.h"
 #include "Differential/DiscreteForms.h"
 
 /// The two linear systems of Lipman et al., Linear Rotation-invariant
@@ -20,9 +20,10 @@ SparseMatrix FrameMatrix(
 /// The frames that fit the transitions best in the least-squares sense, with
 /// those given where `isFixed` is non-zero: #V x 9. Raw: rotations only if the
 /// transitions are consistent. Throws Error(SingularSystem) for a component
-/// without a fixed frame. Unused vertices keep what `frames` has.
+/// without a fixed frame. Unused vertices keep what `frames` has. `system` keeps the
+/// symbolic factors for other transitions on the same mesh.
 Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
-  const std::vector<char>& isFixed, Matrices frames, ConstrainedSolver& solver,
+  const std::vector<char>& isFixed, Matrices frames, AnchoredSystem& system,
   const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {});
 
 /// The same frames by conjugate gradients, without a factorization of the 3 #V
@@ -34,7 +35,7 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
 /// residual is 1e-10 of that of the start. `steps`, if given, receives the
 /// number of steps; throws Error(NotConverged) after 1000.
 Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
-  const std::vector<char>& isFixed, Matrices start, const ConstrainedSolver& laplacian,
+  const std::vector<char>& isFixed, Matrices start, const AnchoredSystem& laplacian,
   int* steps = nullptr, const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {});
 
 /// b of the normal equations L x = b that SolvePositions solves, with the graph
@@ -48,6 +49,5 @@ Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, co
 /// Error(SingularSystem) for a component without a fixed position. Unused
 /// vertices keep what `positions` has.
 Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
-  const std::vector<char>& isFixed, Points positions, ConstrainedSolver& solver,
-  const ExecutionContext& context = {});
+  const std::vector<char>& isFixed, Points positions, const ExecutionContext& context = {});
 }

@@ -35,11 +35,6 @@ public:
   /// around, and for all vertices with uniform weights. #V.
   const Eigen::VectorXd& GetMass() const { return this->Mass; }
 
-  /// L between the given vertices: the rows and columns of Laplacian() that
-  /// belong to them, in this order. Rows of vertices whose neighbors are all
-  /// among them are complete.
-  SparseMatrix Restricted(const TriangleMesh& mesh, const std::vector<int>& vertices) const;
-
 private:
   Eigen::VectorXd Weights;
   Eigen::VectorXd Mass;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace cartan
 {
@@ -134,27 +135,47 @@ Eigen::VectorXd SymmetricPart(const TriangleMesh& mesh, const Eigen::VectorXd& e
 
 SparseMatrix Laplacian(const TriangleMesh& mesh, const Eigen::VectorXd& edgeWeights)
 {
-  SparseMatrix laplacian(mesh.NumberOfVertices(), mesh.NumberOfVertices());
-  laplacian.reserve(mesh.NumberOfDirectedEdges() + mesh.NumberOfVertices());
-  std::vector<std::pair<int, double>> column;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  std::vector<int> all(mesh.NumberOfVertices());
+  std::iota(all.begin(), all.end(), 0);
+  return Laplacian(mesh, edgeWeights, all);
+}
+
+SparseMatrix Laplacian(
+  const TriangleMesh& mesh, const Eigen::VectorXd& edgeWeights, const std::vector<int>& vertices)
+{
+  std::vector<int> local(mesh.NumberOfVertices(), -1);
+  const auto size = static_cast<Eigen::Index>(vertices.size());
+  Eigen::Index entries = size;
+  for (Eigen::Index i = 0; i < size; ++i)
   {
+    local[vertices[i]] = static_cast<int>(i);
+    entries += mesh.Valence(vertices[i]);
+  }
+  SparseMatrix laplacian(size, size);
+  laplacian.reserve(entries);
+  std::vector<std::pair<int, double>> column;
+  for (Eigen::Index i = 0; i < size; ++i)
+  {
+    const int v = vertices[i];
     column.clear();
     double sum = 0.0;
     for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
-      column.emplace_back(mesh.Neighbor(d), -edgeWeights[mesh.Twin(d)]);
       sum += edgeWeights[d];
+      if (local[mesh.Neighbor(d)] >= 0)
+      {
+        column.emplace_back(local[mesh.Neighbor(d)], -edgeWeights[mesh.Twin(d)]);
+      }
     }
     if (mesh.IsUsed(v))
     {
-      column.emplace_back(v, sum);
+      column.emplace_back(static_cast<int>(i), sum);
     }
     std::sort(column.begin(), column.end());
-    laplacian.startVec(v);
+    laplacian.startVec(i);
     for (const auto& [row, value] : column)
     {
-      laplacian.insertBack(row, v) = value;
+      laplacian.insertBack(row, i) = value;
     }
   }
   laplacian.finalize();

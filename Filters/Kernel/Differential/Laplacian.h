@@ -40,6 +40,12 @@ Eigen::VectorXd SymmetricPart(const TriangleMesh& mesh, const Eigen::VectorXd& e
 /// operator. Rows of unused vertices are empty.
 SparseMatrix Laplacian(const TriangleMesh& mesh, const Eigen::VectorXd& edgeWeights);
 
+/// Its rows and columns that belong to `vertices`, in this order: #vertices x
+/// #vertices. Rows of vertices whose neighbors are all among them are complete, so
+/// that systems in which the others are given see the whole surface.
+SparseMatrix Laplacian(
+  const TriangleMesh& mesh, const Eigen::VectorXd& edgeWeights, const std::vector<int>& vertices);
+
 /// The same for any graph, with an edge (i, j) per row of `edges` (#E x 2) and its
 /// weight: #nodes x #nodes. Edges may be there several times.
 SparseMatrix GraphLaplacian(int numberOfNodes,

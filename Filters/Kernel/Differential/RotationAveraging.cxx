@@ -7,7 +7,7 @@
 namespace cartan
 {
 RotationAveraging::RotationAveraging(
-  int numberOfNodes, std::vector<Edge> edges, std::shared_ptr<const ConstrainedSolver> laplacian)
+  int numberOfNodes, std::vector<Edge> edges, std::shared_ptr<const AnchoredSystem> laplacian)
   : NodeCount(numberOfNodes)
   , Edges(std::move(edges))
   , Laplacian(std::move(laplacian))

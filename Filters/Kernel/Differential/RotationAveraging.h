@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Algebra/ConstrainedSolver.h"
+#include "Algebra/AnchoredSystem.h"
 #include "Base/Bytes.h"
 
 #include <memory>
@@ -34,7 +34,7 @@ public:
   /// `laplacian` is factorized: the matrix sum w (v_from - v_to)^2, with a fixed
   /// node in each component at least. Frames of fixed nodes are kept.
   RotationAveraging(
-    int numberOfNodes, std::vector<Edge> edges, std::shared_ptr<const ConstrainedSolver> laplacian);
+    int numberOfNodes, std::vector<Edge> edges, std::shared_ptr<const AnchoredSystem> laplacian);
 
   struct Result
   {
@@ -58,6 +58,6 @@ public:
 private:
   int NodeCount;
   std::vector<Edge> Edges;
-  std::shared_ptr<const ConstrainedSolver> Laplacian;
+  std::shared_ptr<const AnchoredSystem> Laplacian;
 };
 }

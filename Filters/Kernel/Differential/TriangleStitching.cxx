@@ -20,8 +20,8 @@ TriangleStitching::TriangleStitching(Triangles triangles, Points cornerWeights,
     }
   }
   const Eigen::Map<const Eigen::VectorXd> weights(this->Weights.data(), this->Weights.size());
-  this->Solver.Factorize(
-    GraphLaplacian(static_cast<int>(isHeld.size()), edges, weights), isHeld, {}, {}, context);
+  this->System.Factorize(GraphLaplacian(static_cast<int>(isHeld.size()), edges, weights),
+    Anchors::Hard(isHeld), context);
 }
 
 void TriangleStitching::Stitch(const Matrices& corners, Points& positions) const
@@ -41,7 +41,7 @@ void TriangleStitching::Stitch(const Matrices& corners, Points& positions) const
     }
   }
   Field values = positions;
-  this->Solver.Solve(rightHandSide, values);
+  this->System.Solve(rightHandSide, values);
   positions = values;
 }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Algebra/ConstrainedSolver.h"
+#include "Algebra/AnchoredSystem.h"
 #include "Base/Bytes.h"
 
 namespace cartan
@@ -33,12 +33,12 @@ public:
 
   std::size_t GetBytes() const
   {
-    return this->Solver.GetBytes() + TotalBytes(this->Corners, this->Weights);
+    return this->System.GetBytes() + TotalBytes(this->Corners, this->Weights);
   }
 
 private:
   Triangles Corners;
   Points Weights;
-  ConstrainedSolver Solver;
+  AnchoredSystem System;
 };
 }

@@ -4,7 +4,7 @@
 #include "Differential/Laplacian.h"
 #include "Differential/RotationFit.h"
 #include "Measure/ComponentVolumes.h"
-#include "Mesh/Geometry.h"
+#include "Measure/ImplicitSmoothing.h"
 
 #include <limits>
 #include <utility>
@@ -27,38 +27,23 @@ LocalVolumes::LocalVolumes(std::shared_ptr<const TriangleMesh> sharedMesh, const
   : Mesh(std::move(sharedMesh))
   , Positions(reference)
   , EdgeWeight(EdgeWeights(*this->Mesh, reference, LaplacianWeights::Cotangent, context))
-  , Stiffness(MixedVoronoiAreas(*this->Mesh, reference, context))
   , Centers(reference)
 {
   const TriangleMesh& mesh = *this->Mesh;
   const std::vector<ComponentVolume> components = MeasureComponents(mesh, reference);
-  std::vector<double> smoothing;
+  std::vector<double> steps;
   for (const ComponentVolume& component : components)
   {
     const bool enclosesVolume = component.EnclosesVolume();
-    const double length = enclosesVolume ? 6.0 * component.Volume / component.Area : 1.0;
+    const double length = enclosesVolume ? 6.0 * component.Volume / component.Area : 0.0;
     this->EnclosesVolume.push_back(enclosesVolume);
-    smoothing.push_back(length * length);
+    steps.push_back(length * length);
   }
-  std::vector<char> isFixed(mesh.NumberOfVertices(), 1);
-  bool isAnyFree = false;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    if (mesh.IsUsed(v))
-    {
-      this->Stiffness[v] /= smoothing[mesh.Component(v)];
-      isFixed[v] = !this->EnclosesVolume[mesh.Component(v)];
-      isAnyFree = isAnyFree || !isFixed[v];
-    }
-  }
-  if (isAnyFree)
-  {
-    this->Solver.Factorize(
-      Laplacian(mesh, this->EdgeWeight), isFixed, this->Stiffness, {}, context);
-    Field centers = reference;
-    this->Solver.Solve(Field(this->Stiffness.asDiagonal() * reference), centers);
-    this->Centers = centers;
-  }
+  this->System.Factorize(
+    Laplacian(mesh, this->EdgeWeight), SmoothingAnchors(mesh, reference, steps), context);
+  Field centers = reference;
+  this->System.Interpolate(centers);
+  this->Centers = centers;
   this->Reference = this->Sum(reference, this->Centers);
   context.Report(1.0);
 }
@@ -67,7 +52,7 @@ Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionCont
 {
   const TriangleMesh& mesh = *this->Mesh;
   Field centers = current;
-  if (!this->Solver.GetFree().empty())
+  if (!this->System.GetFree().empty())
   {
     const Matrices rotations = FitRotations(mesh, this->Positions, current, context);
     Field rightHandSide(current.rows(), 3);
@@ -78,8 +63,8 @@ Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionCont
         {
           const Eigen::Vector3d offset =
             (this->Positions.row(v) - this->Centers.row(v)).transpose();
-          Eigen::Vector3d sum =
-            this->Stiffness[v] * (current.row(v).transpose() - MatrixAt(rotations, v) * offset);
+          centers.row(v) -= (MatrixAt(rotations, v) * offset).transpose();
+          Eigen::Vector3d sum = Eigen::Vector3d::Zero();
           for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
           {
             const int w = mesh.Neighbor(d);
@@ -91,7 +76,7 @@ Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionCont
           rightHandSide.row(v) = sum.transpose();
         }
       });
-    this->Solver.Solve(rightHandSide, centers);
+    this->System.Solve(rightHandSide, centers);
   }
   context.Report(1.0);
   return this->Sum(current, centers);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Algebra/ConstrainedSolver.h"
+#include "Algebra/AnchoredSystem.h"
 #include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
@@ -58,9 +58,9 @@ public:
   /// Without the mesh, which others hold too.
   std::size_t GetBytes() const
   {
-    return this->Solver.GetBytes() +
-      TotalBytes(this->Positions, this->EnclosesVolume, this->EdgeWeight, this->Stiffness,
-        this->Centers, this->Reference);
+    return this->System.GetBytes() +
+      TotalBytes(
+        this->Positions, this->EnclosesVolume, this->EdgeWeight, this->Centers, this->Reference);
   }
 
 private:
@@ -70,8 +70,7 @@ private:
   Points Positions;
   std::vector<char> EnclosesVolume; // #components
   Eigen::VectorXd EdgeWeight;       // #D
-  Eigen::VectorXd Stiffness;        // #V, M / tau
-  ConstrainedSolver Solver;
+  AnchoredSystem System;            // M / tau + L
   Points Centers;
   Eigen::VectorXd Reference;
 };

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Measure/VolumeModel.h"
 
-#include "Algebra/ConstrainedSolver.h"
+#include "Algebra/AnchoredSystem.h"
 #include "Base/Constants.h"
 #include "Differential/Curvature.h"
 #include "Differential/Laplacian.h"
 #include "Measure/ComponentVolumes.h"
+#include "Measure/ImplicitSmoothing.h"
 #include "Mesh/Geometry.h"
 
 #include <algorithm>
@@ -92,10 +93,10 @@ void FillDepths(const TriangleMesh& mesh, const SparseMatrix& laplacian, VolumeM
   {
     return;
   }
-  ConstrainedSolver solver;
-  solver.Factorize(laplacian, isFixed);
+  AnchoredSystem system;
+  system.Factorize(laplacian, Anchors::Hard(std::move(isFixed)));
   Field depth = model.LocalDepth;
-  solver.Solve(Field::Zero(depth.rows(), 1), depth);
+  system.Interpolate(depth);
   model.LocalDepth = depth.col(0);
 }
 
@@ -104,12 +105,10 @@ Points SmoothedCenters(const TriangleMesh& mesh, const Points& points,
   const SparseMatrix& laplacian, const Points& centers, const VolumeModel& model)
 {
   std::vector<std::vector<double>> depths(mesh.NumberOfComponents());
-  std::vector<char> isFixed(mesh.NumberOfVertices(), 1);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     if (mesh.IsUsed(v) && model.EnclosesVolume[mesh.Component(v)])
     {
-      isFixed[v] = 0;
       depths[mesh.Component(v)].push_back(model.LocalDepth[v]);
     }
   }
@@ -119,17 +118,12 @@ Points SmoothedCenters(const TriangleMesh& mesh, const Points& points,
   {
     const auto middle = some.begin() + some.size() / 2;
     std::nth_element(some.begin(), middle, some.end());
-    steps.push_back(some.empty() ? 1.0 : 0.02 * *middle * *middle);
+    steps.push_back(some.empty() ? 0.0 : 0.02 * *middle * *middle);
   }
-  Eigen::VectorXd stiffness = MixedVoronoiAreas(mesh, points);
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    stiffness[v] /= mesh.IsUsed(v) ? steps[mesh.Component(v)] : 1.0;
-  }
-  ConstrainedSolver solver;
-  solver.Factorize(laplacian, isFixed, stiffness);
+  AnchoredSystem system;
+  system.Factorize(laplacian, SmoothingAnchors(mesh, points, steps));
   Field smoothed = centers;
-  solver.Solve(stiffness.asDiagonal() * centers, smoothed);
+  system.Interpolate(smoothed);
   return smoothed;
 }
 

@@ -18,7 +18,7 @@ DiscreteFormsMorph::DiscreteFormsMorph(const KeyFrames& keys, Transitions transi
   , Parameters(keys.Parameters)
   , Method(transitions)
   , Solver(solver)
-  , Laplacian(std::make_shared<ConstrainedSolver>())
+  , Laplacian(std::make_shared<AnchoredSystem>())
 {
   for (int d = 0; d < this->Mesh->NumberOfDirectedEdges(); ++d)
   {
@@ -76,7 +76,7 @@ void DiscreteFormsMorph::SetUpAveraging(const ExecutionContext& context)
 {
   const TriangleMesh& mesh = *this->Mesh;
   this->Laplacian->Factorize(
-    cartan::Laplacian(mesh, this->Weights), mesh.Grounded(), {}, {}, context);
+    cartan::Laplacian(mesh, this->Weights), Anchors::Hard(mesh.Grounded()), context);
   std::vector<RotationAveraging::Edge> edges;
   edges.reserve(this->Directed.size());
   for (const int d : this->Directed)

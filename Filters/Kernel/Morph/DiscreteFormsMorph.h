@@ -100,9 +100,9 @@ private:
   KeyInterpolation KeyRings;   // 3 #D, the edges in the frames of their origins
   Matrices MeanTransitions;    // #E x 9, of Transitions::Rotations
   KeyInterpolation FromMean;   // 3 #E, rotation vectors
-  std::shared_ptr<ConstrainedSolver> Laplacian;
+  std::shared_ptr<AnchoredSystem> Laplacian;
   std::unique_ptr<RotationAveraging> Averaging;
-  ConstrainedSolver FrameSystem; // of FrameSolver::Direct
+  AnchoredSystem FrameSystem; // of FrameSolver::Direct
   FrameMemory Known;
   int Iterations = 0;
   std::string Warning;

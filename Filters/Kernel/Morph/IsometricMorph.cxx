@@ -90,10 +90,10 @@ std::unique_ptr<RotationAveraging> HingeAveraging(
     arcs.row(h) << hinge.Left, hinge.Right;
     edges.push_back({ hinge.Left, hinge.Right });
   }
-  auto laplacian = std::make_shared<ConstrainedSolver>();
+  auto laplacian = std::make_shared<AnchoredSystem>();
   laplacian->Factorize(
     GraphLaplacian(topology.NumberOfTriangles(), arcs, Eigen::VectorXd::Ones(numberOfHinges)),
-    isHeld, {}, {}, context);
+    Anchors::Hard(isHeld), context);
   return std::make_unique<RotationAveraging>(
     topology.NumberOfTriangles(), std::move(edges), std::move(laplacian));
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Algebra/ConstrainedSolver.h"
 #include "Differential/DualForest.h"
 #include "Differential/Hinges.h"
 #include "Differential/RotationAveraging.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Morph/LengthPolish.h"
 
+#include "Algebra/ConjugateGradients.h"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -129,31 +131,22 @@ private:
   double Damping = 0.0;
 };
 
-/// A^-1 b to 1e-3 by preconditioned conjugate gradients: the next round corrects
-/// what a step lacks (Dembo, Eisenstat, Steihaug, Inexact Newton Methods, 1982).
+/// A^-1 b to 1e-3: the next round corrects what a step lacks (Dembo, Eisenstat,
+/// Steihaug, Inexact Newton Methods, 1982).
 Points Solve(const LengthEquations& equations, Points residual, const ExecutionContext& context)
 {
   constexpr double tolerance = 1e-3;
-  constexpr int maximumSteps = 2000;
   Points solution = Points::Zero(residual.rows(), 3);
-  Points direction = equations.Precondition(residual);
-  double product = residual.cwiseProduct(direction).sum();
-  const double start = product;
   double done = 0.0;
-  for (int step = 0; step < maximumSteps && product > tolerance * tolerance * start; ++step)
-  {
-    const Points image = equations.Apply(direction);
-    const double length = product / direction.cwiseProduct(image).sum();
-    solution += length * direction;
-    residual -= length * image;
-    const Points preconditioned = equations.Precondition(residual);
-    const double next = residual.cwiseProduct(preconditioned).sum();
-    direction = preconditioned + next / product * direction;
-    product = next;
-    // Digits gained of those asked for; a residual may grow for a while.
-    done = std::max(done, 0.5 * std::log(product / start) / std::log(tolerance));
-    context.Report(std::min(done, 1.0));
-  }
+  ConjugateGradients(
+    solution, std::move(residual), [&](const Points& v) { return equations.Apply(v); },
+    [&](const Points& r) { return equations.Precondition(r); }, { tolerance, 2000 },
+    [&](int, double reduction)
+    {
+      // Digits gained of those asked for; a residual may grow for a while.
+      done = std::max(done, 0.5 * std::log(reduction) / std::log(tolerance));
+      context.Report(std::min(done, 1.0));
+    });
   return solution;
 }
 }

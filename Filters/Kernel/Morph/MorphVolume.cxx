@@ -42,8 +42,8 @@ MorphVolume::MorphVolume(const KeyFrames& keys, const ExecutionContext& context)
       "out against the first one: close its holes (Fill Holes).";
   }
   this->Laplacian.Factorize(
-    cartan::Laplacian(mesh, Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges())), mesh.Grounded(),
-    {}, {}, context);
+    cartan::Laplacian(mesh, Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges())),
+    Anchors::Hard(mesh.Grounded()), context);
 }
 
 std::string MorphVolume::Close(double t, Points& positions) const

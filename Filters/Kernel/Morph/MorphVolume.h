@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Algebra/ConstrainedSolver.h"
+#include "Algebra/AnchoredSystem.h"
 #include "Morph/KeyInterpolation.h"
 #include "Morph/SurfaceMorph.h"
 
@@ -32,7 +32,7 @@ private:
   std::shared_ptr<const TriangleMesh> Mesh;
   KeyInterpolation Volumes; // #components rows
   std::vector<char> TakesPart;
-  ConstrainedSolver Laplacian;
+  AnchoredSystem Laplacian;
   std::string Warning;
 };
 }

@@ -113,6 +113,40 @@ Matrices TriangleFrames(const TriangleMesh& mesh, const Matrices& corners)
   return frames;
 }
 
+/// The triangles across the edges of one; -1 at the boundary.
+Eigen::Vector3i NeighborTriangles(const TriangleMesh& mesh, int t)
+{
+  Eigen::Vector3i neighbors;
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    int d = mesh.RingBegin(mesh.GetTriangles()(t, corner));
+    while (mesh.LeftTriangle(d) != t)
+    {
+      ++d;
+    }
+    neighbors[corner] = mesh.LeftTriangle(mesh.Twin(d));
+  }
+  return neighbors;
+}
+
+/// The triangle of each component that has the shortest of `vectors`, among those
+/// with a rotation: #components.
+std::vector<int> LeastTurned(
+  const TriangleMesh& mesh, const Matrices& rotations, const Points& vectors)
+{
+  std::vector<int> least(mesh.NumberOfComponents(), -1);
+  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    int& ofComponent = least[mesh.Component(mesh.GetTriangles()(t, 0))];
+    if (!rotations.row(t).isZero(0.0) &&
+      (ofComponent < 0 || vectors.row(t).norm() < vectors.row(ofComponent).norm()))
+    {
+      ofComponent = t;
+    }
+  }
+  return least;
+}
+
 /// Rotation vectors that mean `rotations` (#T x 9) and are near to those of
 /// neighbors: #T x 3. Spreads from the least turned triangle of each component
 /// over the most alike neighbors first. Triangles without a rotation take their
@@ -120,55 +154,35 @@ Matrices TriangleFrames(const TriangleMesh& mesh, const Matrices& corners)
 Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
 {
   const int numberOfTriangles = mesh.NumberOfTriangles();
-  std::vector<int> seeds(mesh.NumberOfComponents(), -1);
   Points vectors = Points::Zero(numberOfTriangles, 3);
   for (int t = 0; t < numberOfTriangles; ++t)
   {
     if (!rotations.row(t).isZero(0.0))
     {
       vectors.row(t) = VectorFromRotation(MatrixAt(rotations, t)).transpose();
-      int& seed = seeds[mesh.Component(mesh.GetTriangles()(t, 0))];
-      if (seed < 0 || vectors.row(t).norm() < vectors.row(seed).norm())
-      {
-        seed = t;
-      }
     }
   }
-  const auto neighborsOf = [&mesh](int t)
-  {
-    Eigen::Vector3i neighbors;
-    for (int corner = 0; corner < 3; ++corner)
-    {
-      const int from = mesh.GetTriangles()(t, corner);
-      int d = mesh.RingBegin(from);
-      while (mesh.LeftTriangle(d) != t)
-      {
-        ++d;
-      }
-      neighbors[corner] = mesh.LeftTriangle(mesh.Twin(d));
-    }
-    return neighbors;
-  };
   // How far apart, the triangle, the neighbor it takes its branch from.
   using Step = std::tuple<double, int, int>;
   std::priority_queue<Step, std::vector<Step>, std::greater<>> queue;
   std::vector<char> isDone(numberOfTriangles, 0);
+  const auto nearTo = [&](int t, const Eigen::Vector3d& guess)
+  {
+    return rotations.row(t).isZero(0.0) ? guess : VectorFromRotation(MatrixAt(rotations, t), guess);
+  };
   const auto take = [&](int t)
   {
     isDone[t] = 1;
-    for (const int neighbor : neighborsOf(t))
+    const Eigen::Vector3d vector = vectors.row(t);
+    for (const int neighbor : NeighborTriangles(mesh, t))
     {
       if (neighbor >= 0 && !isDone[neighbor])
       {
-        const Eigen::Vector3d guess = vectors.row(t);
-        const double distance = rotations.row(neighbor).isZero(0.0)
-          ? 0.0
-          : (VectorFromRotation(MatrixAt(rotations, neighbor), guess) - guess).norm();
-        queue.emplace(distance, neighbor, t);
+        queue.emplace((nearTo(neighbor, vector) - vector).norm(), neighbor, t);
       }
     }
   };
-  for (const int seed : seeds)
+  for (const int seed : LeastTurned(mesh, rotations, vectors))
   {
     take(seed);
     while (!queue.empty())
@@ -177,10 +191,7 @@ Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
       queue.pop();
       if (!isDone[t])
       {
-        const Eigen::Vector3d guess = vectors.row(from);
-        vectors.row(t) =
-          (rotations.row(t).isZero(0.0) ? guess : VectorFromRotation(MatrixAt(rotations, t), guess))
-            .transpose();
+        vectors.row(t) = nearTo(t, vectors.row(from).transpose()).transpose();
         take(t);
       }
     }
