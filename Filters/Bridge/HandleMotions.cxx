@@ -59,34 +59,53 @@ HandleMotion ToKernel(vtkHandleMotion* motion, const Eigen::Vector3d& origin)
   return result;
 }
 
-/// The target of one point by the arrays.
-void SetTarget(const HandleArrays& arrays, Eigen::Index row, int vertex, HandleTargets& targets)
+/// The target in a row of `targets` by a row of the arrays.
+void SetTarget(
+  const HandleArrays& arrays, Eigen::Index from, Eigen::Index row, HandleTargets& targets)
 {
-  auto transform = MatrixAt(targets.Transforms, vertex);
+  auto transform = MatrixAt(targets.Transforms, row);
   if (arrays.Positions.rows())
   {
-    targets.Positions.row(vertex) = arrays.Positions.row(row);
+    targets.Positions.row(row) = arrays.Positions.row(from);
   }
   if (arrays.RotationVectors.rows())
   {
-    targets.RotationVectors.row(vertex) = arrays.RotationVectors.row(row);
-    transform = RotationFromVector(arrays.RotationVectors.row(row).transpose());
+    targets.RotationVectors.row(row) = arrays.RotationVectors.row(from);
+    transform = RotationFromVector(arrays.RotationVectors.row(from).transpose());
   }
   if (arrays.Transforms.rows())
   {
-    transform = TransformAt(arrays, row);
-    targets.RotationVectors.row(vertex) =
+    transform = TransformAt(arrays, from);
+    targets.RotationVectors.row(row) =
       VectorFromRotation(ProjectOnRotations(transform)).transpose();
   }
 }
 
-/// The target of one point by its handle's motion.
-void SetTarget(const HandleMotion& motion, int vertex, HandleTargets& targets)
+/// The target in a row of `targets` by its handle's motion.
+void SetTarget(const HandleMotion& motion, Eigen::Index row, HandleTargets& targets)
 {
-  targets.Positions.row(vertex) =
-    (motion.Linear * targets.Positions.row(vertex).transpose() + motion.Translation).transpose();
-  targets.RotationVectors.row(vertex) = motion.RotationVector.transpose();
-  MatrixAt(targets.Transforms, vertex) = motion.Linear;
+  targets.Positions.row(row) =
+    (motion.Linear * targets.Positions.row(row).transpose() + motion.Translation).transpose();
+  targets.RotationVectors.row(row) = motion.RotationVector.transpose();
+  MatrixAt(targets.Transforms, row) = motion.Linear;
+}
+
+/// Gives the points of moving handles a row each, which leaves them where they are.
+void AddRows(const HandleProblem& problem, const Handles& handles, HandleTargets& targets)
+{
+  for (std::size_t h = 0; h < handles.Ids.size(); ++h)
+  {
+    if (std::binary_search(problem.Moving.begin(), problem.Moving.end(), handles.Ids[h]))
+    {
+      targets.Vertices.insert(targets.Vertices.end(), handles.Points.begin() + handles.Offsets[h],
+        handles.Points.begin() + handles.Offsets[h + 1]);
+    }
+  }
+  std::sort(targets.Vertices.begin(), targets.Vertices.end());
+  const auto numberOfRows = static_cast<Eigen::Index>(targets.Vertices.size());
+  targets.Positions = (*problem.Rest)(targets.Vertices, Eigen::all);
+  targets.RotationVectors = Points::Zero(numberOfRows, 3);
+  targets.Transforms = Identities(numberOfRows);
 }
 }
 
@@ -198,9 +217,7 @@ HandleTargets MakeTargets(const HandleProblem& problem, const Eigen::Vector3d& o
   {
     return targets;
   }
-  targets.Positions = *problem.Rest;
-  targets.RotationVectors = Points::Zero(problem.Rest->rows(), 3);
-  targets.Transforms = Identities(problem.Rest->rows());
+  AddRows(problem, handles, targets);
   for (std::size_t h = 0; h < handles.Ids.size(); ++h)
   {
     const int id = handles.Ids[h];
@@ -211,13 +228,14 @@ HandleTargets MakeTargets(const HandleProblem& problem, const Eigen::Vector3d& o
     }
     for (int i = handles.Offsets[h]; i < handles.Offsets[h + 1]; ++i)
     {
+      const Eigen::Index row = targets.Row(handles.Points[i]);
       if (motions.count(id))
       {
-        SetTarget(targets.Motions[moving - problem.Moving.begin()], handles.Points[i], targets);
+        SetTarget(targets.Motions[moving - problem.Moving.begin()], row, targets);
       }
       else
       {
-        SetTarget(arrays, i, handles.Points[i], targets);
+        SetTarget(arrays, i, row, targets);
       }
     }
   }

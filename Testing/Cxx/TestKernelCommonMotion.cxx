@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AllDeformers.h"
 #include "HandleShapes.h"
+#include "Ids.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Base/Constants.h"
 #include "TestShapes.h"
@@ -269,6 +270,7 @@ TEST(CommonMotion, IsFoundInTargetsOfSinglePoints)
     HandleMotion byMatrices;
     byMatrices.CountsTurns = false;
     targets.Motions.assign(3, byMatrices);
+    targets.Vertices = shapes::Ids(count);
     targets.Positions = *problem.Rest;
     targets.Transforms = cartan::Identities(count);
     targets.RotationVectors = Points::Zero(count, 3);

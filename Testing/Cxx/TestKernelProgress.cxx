@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AllDeformers.h"
 #include "HandleShapes.h"
+#include "Ids.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
@@ -66,6 +67,7 @@ cartan::HandleTargets Targets(const cartan::HandleProblem& problem, bool perVert
   if (perVertex)
   {
     const Eigen::Index count = problem.Rest->rows();
+    targets.Vertices = shapes::Ids(count);
     targets.Positions = *problem.Rest;
     targets.Transforms = cartan::Identities(count);
     targets.RotationVectors = cartan::Points::Zero(count, 3);

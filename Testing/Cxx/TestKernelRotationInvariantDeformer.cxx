@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Ids.h"
 #include "Kernel/Deformation/RotationInvariantDeformer.h"
 
 #include "HandleShapes.h"
@@ -473,6 +474,7 @@ TEST(RotationInvariantDeformer, SolvesThePapersSystemsWithATargetPerVertex)
   }
   HandleTargets targets;
   targets.Motions.resize(2);
+  targets.Vertices = shapes::Ids(problem.Rest->rows());
   targets.Positions = vertexTargets.Positions;
   targets.Transforms = vertexTargets.Transforms;
 
@@ -644,6 +646,7 @@ TEST(RotationInvariantDeformer, DragsByTheFormulaAsByTheFrames)
         targets.Motions = TwoMotions(shape, rigid);
         const DeformedSurface byFormula = Deform(deformer, targets, FrameProjection::None);
         const VertexTargets vertexTargets = TargetsOfMotions(problem, targets.Motions);
+        targets.Vertices = shapes::Ids(problem.Rest->rows());
         targets.Positions = vertexTargets.Positions;
         targets.Transforms = vertexTargets.Transforms;
         const DeformedSurface byFrames = Deform(deformer, targets, FrameProjection::None);
@@ -664,6 +667,7 @@ TEST(RotationInvariantDeformer, TakesPartOfThePerVertexTargetsAlone)
   motions.Motions = TwoMotions(shape, true);
   const VertexTargets all = TargetsOfMotions(problem, motions.Motions);
   const DeformedSurface expected = Deform(deformer, motions);
+  motions.Vertices = shapes::Ids(problem.Rest->rows());
   HandleTargets positions = motions;
   positions.Positions = all.Positions;
   EXPECT_LT(Distance(Deform(deformer, positions).Positions, expected.Positions), 1e-12);
@@ -967,6 +971,7 @@ TEST(RotationInvariantDeformer, RemembersNothingOfEarlierMotions)
   first.Motions = TwoMotions(shape, false);
   Deform(deformer, first);
   const VertexTargets all = TargetsOfMotions(problem, first.Motions);
+  first.Vertices = shapes::Ids(problem.Rest->rows());
   first.Transforms = all.Transforms;
   first.Positions = all.Positions;
   Deform(deformer, first, FrameProjection::Rotation);
@@ -1061,6 +1066,7 @@ TEST(RotationInvariantDeformer, ProjectsTheTargetsOfSoftPointsLikeThoseOfHeldOne
     {
       HandleTargets targets;
       targets.Motions.resize(2);
+      targets.Vertices = shapes::Ids(shape.NumberOfVertices());
       targets.Positions = shape.Positions;
       targets.Transforms.resize(shape.NumberOfVertices(), 9);
       for (int v = 0; v < shape.NumberOfVertices(); ++v)

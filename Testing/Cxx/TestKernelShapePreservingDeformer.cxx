@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Ids.h"
 #include "Kernel/Deformation/ShapePreservingDeformer.h"
 
 #include "Kernel/Algebra/Rotation.h"
@@ -87,6 +88,7 @@ struct CircleOnPlane
   {
     HandleTargets targets;
     targets.Motions.resize(1);
+    targets.Vertices = shapes::Ids(this->Shape.NumberOfVertices());
     targets.Positions = this->Shape.Positions;
     targets.RotationVectors = Points::Zero(this->Shape.NumberOfVertices(), 3);
     targets.Transforms.resize(this->Shape.NumberOfVertices(), 9);
@@ -635,6 +637,7 @@ TEST(ShapePreservingDeformer, GivesPerVertexTargetsTheFieldOfTheSameMotions)
 
     const HandleMotion motion = targets.Motions[0];
     const int count = problem.Mesh->NumberOfVertices();
+    targets.Vertices = shapes::Ids(count);
     targets.Positions =
       (*problem.Rest * motion.Linear.transpose()).rowwise() + motion.Translation.transpose();
     targets.RotationVectors = motion.RotationVector.transpose().replicate(count, 1);

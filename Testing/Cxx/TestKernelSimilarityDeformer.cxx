@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Ids.h"
 #include "Kernel/Deformation/SimilarityDeformer.h"
 
 #include "HandleShapes.h"
@@ -723,6 +724,7 @@ TEST(SimilarityDeformer, MotionsAndTargetsByVertexAgree)
     Targets({ Motion(RotationFromVector({ 1.2, 0.3, 0.0 }), Vector3d(0.5, 2.0, -1.0)),
       Motion(sheared, Vector3d(1.0, 0.0, 0.3)) });
   HandleTargets byVertex = motions;
+  byVertex.Vertices = shapes::Ids(bar.NumberOfVertices());
   byVertex.Positions = bar.Positions;
   byVertex.Transforms = cartan::Identities(bar.NumberOfVertices());
   for (int v = 0; v < bar.NumberOfVertices(); ++v)

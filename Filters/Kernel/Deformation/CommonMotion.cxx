@@ -175,24 +175,26 @@ RigidMotion CommonMotion::BestFit(const HandleTargets& targets) const
     Eigen::RowVector3d restMean = Eigen::RowVector3d::Zero();
     Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
     Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
-    std::vector<int> vertices;
-    for (int v = 0; v < static_cast<int>(moving.size()); ++v)
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index row = 0; row < targets.Positions.rows(); ++row)
     {
+      const int v = targets.Vertices[row];
       if ((isLowestOnly ? moving[v] == 0 : moving[v] >= 0) && this->Problem.Mesh->IsUsed(v))
       {
-        vertices.push_back(v);
+        rows.push_back(row);
         restMean += rest.row(v);
-        mean += targets.Positions.row(v);
+        mean += targets.Positions.row(row);
         turns += HandleRotation(targets, v, moving[v]);
       }
     }
-    const double count = std::max<double>(1.0, static_cast<double>(vertices.size()));
+    const double count = std::max<double>(1.0, static_cast<double>(rows.size()));
     restMean /= count;
     mean /= count;
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const int v : vertices)
+    for (const Eigen::Index row : rows)
     {
-      covariance += (targets.Positions.row(v) - mean).transpose() * (rest.row(v) - restMean);
+      covariance += (targets.Positions.row(row) - mean).transpose() *
+        (rest.row(targets.Vertices[row]) - restMean);
     }
     const Eigen::Vector3d extents = covariance.jacobiSvd().singularValues();
     // Points on a line leave the rotation about it open: the transforms tell.
@@ -245,27 +247,20 @@ void CommonMotion::MakeRelative(HandleTargets& targets) const
     motion.Translation = back * (motion.Translation - this->Motion.Translation);
     motion.RotationVector = RelativeVector(motion.RotationVector, turn, this->Motion.Rotation);
   }
-  for (int v = 0; v < this->Problem.Mesh->NumberOfVertices(); ++v)
+  for (Eigen::Index row = 0; row < targets.Positions.rows(); ++row)
   {
-    if (this->Regions.GetMoving()[v] < 0)
-    {
-      continue;
-    }
-    if (targets.Positions.rows())
-    {
-      targets.Positions.row(v) =
-        (back * (targets.Positions.row(v).transpose() - this->Motion.Translation)).transpose();
-    }
-    if (targets.Transforms.rows())
-    {
-      MatrixAt(targets.Transforms, v) = back * MatrixAt(targets.Transforms, v).eval();
-    }
-    if (targets.RotationVectors.rows())
-    {
-      targets.RotationVectors.row(v) =
-        RelativeVector(targets.RotationVectors.row(v).transpose(), turn, this->Motion.Rotation)
-          .transpose();
-    }
+    targets.Positions.row(row) =
+      (back * (targets.Positions.row(row).transpose() - this->Motion.Translation)).transpose();
+  }
+  for (Eigen::Index row = 0; row < targets.Transforms.rows(); ++row)
+  {
+    MatrixAt(targets.Transforms, row) = back * MatrixAt(targets.Transforms, row).eval();
+  }
+  for (Eigen::Index row = 0; row < targets.RotationVectors.rows(); ++row)
+  {
+    targets.RotationVectors.row(row) =
+      RelativeVector(targets.RotationVectors.row(row).transpose(), turn, this->Motion.Rotation)
+        .transpose();
   }
 }
 
@@ -283,12 +278,12 @@ std::vector<Eigen::Matrix3d> CommonMotion::HandleRotations(const HandleTargets& 
     }
     return rotations;
   }
-  for (int v = 0; v < this->Problem.Mesh->NumberOfVertices(); ++v)
+  for (Eigen::Index row = 0; row < targets.RotationVectors.rows(); ++row)
   {
-    const int handle = this->Regions.GetMoving()[v];
+    const int handle = this->Regions.GetMoving()[targets.Vertices[row]];
     if (handle >= 0)
     {
-      rotations[handle] += RotationFromVector(targets.RotationVectors.row(v).transpose());
+      rotations[handle] += RotationFromVector(targets.RotationVectors.row(row).transpose());
     }
   }
   for (Eigen::Matrix3d& rotation : rotations)
@@ -322,13 +317,13 @@ void CommonMotion::ChooseTurns(HandleTargets& targets) const
       motion.RotationVector = NearestTurn(motion.RotationVector, turns[branch.Handle]);
     }
   }
-  for (int v = 0; targets.RotationVectors.rows() && v < this->Problem.Mesh->NumberOfVertices(); ++v)
+  for (Eigen::Index row = 0; row < targets.RotationVectors.rows(); ++row)
   {
-    const int k = this->Regions.GetMoving()[v];
+    const int k = this->Regions.GetMoving()[targets.Vertices[row]];
     if (k >= 0 && !targets.Motions[k].CountsTurns)
     {
-      targets.RotationVectors.row(v) =
-        NearestTurn(targets.RotationVectors.row(v).transpose(), turns[k]).transpose();
+      targets.RotationVectors.row(row) =
+        NearestTurn(targets.RotationVectors.row(row).transpose(), turns[k]).transpose();
     }
   }
 }

@@ -123,7 +123,7 @@ Eigen::Vector3d HandleTarget(
   }
   if (targets.Positions.rows())
   {
-    return targets.Positions.row(vertex);
+    return targets.Positions.row(targets.Row(vertex));
   }
   return targets.Motions[handle].Linear * rest + targets.Motions[handle].Translation;
 }
@@ -134,8 +134,9 @@ Eigen::Matrix3d HandleTransform(const HandleTargets& targets, int vertex, int ha
   {
     return Eigen::Matrix3d::Identity();
   }
-  return targets.Transforms.rows() ? Eigen::Matrix3d(MatrixAt(targets.Transforms, vertex))
-                                   : targets.Motions[handle].Linear;
+  return targets.Transforms.rows()
+    ? Eigen::Matrix3d(MatrixAt(targets.Transforms, targets.Row(vertex)))
+    : targets.Motions[handle].Linear;
 }
 
 Points HandlePositions(

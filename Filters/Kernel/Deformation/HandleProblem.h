@@ -4,6 +4,7 @@
 #include "Base/Bytes.h"
 #include "Differential/Laplacian.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <vector>
@@ -83,13 +84,22 @@ struct HandleMotion
 struct HandleTargets
 {
   std::vector<HandleMotion> Motions; ///< one per HandleProblem::Moving
-  /// Instead of Motions, vertex by vertex: empty or #V rows, read at the
-  /// vertices of moving handles. Positions replace where a motion moves a
-  /// vertex, Transforms its linear part; RotationVectors, in radians, replace
-  /// Transforms for methods that see rotations as angles.
+  /// Instead of Motions, vertex by vertex: the vertices that have rows, in
+  /// increasing order, among them all of moving handles; and empty or a row for
+  /// each of them. Positions replace where a motion moves a vertex, Transforms its
+  /// linear part; RotationVectors, in radians, replace Transforms for methods that
+  /// see rotations as angles.
+  std::vector<int> Vertices;
   Points Positions;
   Matrices Transforms;
   Points RotationVectors;
+
+  /// The row of one of Vertices.
+  Eigen::Index Row(int vertex) const
+  {
+    return std::lower_bound(this->Vertices.begin(), this->Vertices.end(), vertex) -
+      this->Vertices.begin();
+  }
 
   bool IsPerVertex() const { return this->Positions.rows() || this->Transforms.rows(); }
 };

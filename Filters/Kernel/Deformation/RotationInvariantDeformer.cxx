@@ -44,7 +44,7 @@ bool RotationInvariantDeformer::UsesRotations(const HandleTargets& targets) cons
   {
     for (const HandleVertex& held : this->HandleVertices)
     {
-      look(MatrixAt(targets.Transforms, held.Vertex));
+      look(HandleTransform(targets, held.Vertex, held.Handle));
     }
   }
   else

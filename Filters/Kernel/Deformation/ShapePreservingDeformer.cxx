@@ -57,8 +57,9 @@ ShapePreservingDeformer::ShapePreservingDeformer(
 Eigen::Vector3d ShapePreservingDeformer::RotationVector(
   const HandleTargets& targets, const HandleVertex& held) const
 {
-  return targets.RotationVectors.rows() ? Eigen::Vector3d(targets.RotationVectors.row(held.Vertex))
-                                        : targets.Motions[held.Handle].RotationVector;
+  return targets.RotationVectors.rows()
+    ? Eigen::Vector3d(targets.RotationVectors.row(targets.Row(held.Vertex)))
+    : targets.Motions[held.Handle].RotationVector;
 }
 
 /// S of A = R S, with the rotation R of a handle's vertex and its linear map A.

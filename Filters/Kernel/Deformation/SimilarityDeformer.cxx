@@ -259,11 +259,12 @@ void SimilarityDeformer::WarnOfSingularTransforms(const HandleTargets& targets)
   const bool isPerVertex = targets.Transforms.rows() > 0;
   if (isPerVertex)
   {
-    for (std::size_t v = 0; v < this->System.GetMovingHandles().size(); ++v)
+    for (std::size_t row = 0; row < targets.Vertices.size(); ++row)
     {
+      const int v = targets.Vertices[row];
       if (this->System.GetMovingHandles()[v] >= 0)
       {
-        look(MatrixAt(targets.Transforms, static_cast<Eigen::Index>(v)), static_cast<long long>(v));
+        look(MatrixAt(targets.Transforms, static_cast<Eigen::Index>(row)), v);
       }
     }
   }
