@@ -29,9 +29,8 @@ Eigen::VectorXd SquaredSoftWeights(
 std::vector<int> MovingHandleOfVertices(const HandleProblem& problem);
 
 /// Whether methods keep a field per handle: whether the problem has no more
-/// handles than HandleProblem::StoredHandles, moving or pinned. So a deformer
-/// that serves a problem with fewer moving ones takes the same path as one made
-/// for it.
+/// handles than HandleProblem::StoredHandles, moving or pinned. So pinning a handle
+/// does not change the way that a result is found.
 bool StoresHandleFields(const HandleProblem& problem);
 
 /// Where a handle's vertex is to go; handle -1 is pinned.

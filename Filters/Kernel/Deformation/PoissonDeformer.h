@@ -30,14 +30,6 @@ class PoissonDeformer : public FrameDeformer
 public:
   PoissonDeformer(HandleProblem problem, Propagation propagation,
     SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
-
-  /// Geodesic weights know distances from pinned handles and from moving ones
-  /// apart: one at rest is no pinned one.
-  bool Serves(const HandleProblem& problem) const override
-  {
-    return this->Kind == Propagation::Geodesic ? this->ServesSameMoving(problem)
-                                               : FrameDeformer::Serves(problem);
-  }
   std::size_t GetBytes() const override
   {
     return FrameDeformer::GetBytes() + (this->Harmonic ? this->Harmonic->GetBytes() : 0) +

@@ -106,14 +106,6 @@ public:
   std::string GetWarning() const override { return this->Warning; }
   std::size_t GetBytes() const override;
 
-  /// A handle at rest that gives no transforms leaves the surface beside it
-  /// free to turn; pinned ones always give them.
-  bool Serves(const HandleProblem& problem) const override
-  {
-    return this->ConstrainsTransforms ? SurfaceDeformer::Serves(problem)
-                                      : this->ServesSameMoving(problem);
-  }
-
   /// The vertices that are in one plane with their neighbors.
   int GetNumberOfFlatVertices() const { return this->System.GetGradients().NumberOfNormals(); }
 

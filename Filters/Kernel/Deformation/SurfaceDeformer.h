@@ -29,13 +29,6 @@ public:
   /// handle of this one.
   const HandleProblem& GetProblem() const { return this->Problem; }
 
-  /// Whether a deformer made for `problem` would find the same surfaces, up to
-  /// rounding, when handles that are moving here only are given no motion. By
-  /// default everything must be the same, but for Moving, which may be fewer
-  /// while ConstrainPositions is on and a handle is pinned here. Mesh and Rest
-  /// are compared as objects.
-  virtual bool Serves(const HandleProblem& problem) const;
-
   virtual int GetNumberOfFactorizations() const = 0;
 
   /// What is odd about the last result, in sentences; empty if nothing is.
@@ -67,12 +60,6 @@ protected:
   std::size_t GetBaseBytes() const
   {
     return this->Problem.GetBytes() + (this->Common ? this->Common->GetBytes() : 0);
-  }
-
-  /// Serves() of methods in which a handle at rest is not a pinned one.
-  bool ServesSameMoving(const HandleProblem& problem) const
-  {
-    return SurfaceDeformer::Serves(problem) && this->Problem.Moving == problem.Moving;
   }
 
   HandleProblem Problem;
