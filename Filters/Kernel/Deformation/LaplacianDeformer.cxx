@@ -175,18 +175,18 @@ void LaplacianDeformer::EstimateRotations(
         restMean /= static_cast<double>(ring.size());
         mean /= static_cast<double>(ring.size());
         Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-        Eigen::Matrix3d change = Eigen::Matrix3d::Zero();
+        bool isStill = true;
         for (const int w : ring)
         {
-          const Eigen::RowVector3d before = rest.row(w) - restMean.transpose();
-          covariance += before.transpose() * before;
-          change += (displacements.row(w).transpose() - mean) * before;
+          const Eigen::Vector3d before = rest.row(w).transpose() - restMean;
+          const Eigen::Vector3d change = displacements.row(w).transpose() - mean;
+          covariance += (before + change) * before.transpose();
+          isStill = isStill && change.isZero(0.0);
         }
         // Exact where nothing moves: differential coordinates next to short edges
         // would make much of the rounding of a fit.
-        MatrixAt(this->Transforms, row) = change.isZero(0.0)
-          ? Eigen::Matrix3d::Identity()
-          : ProjectOnRotations(covariance + change);
+        MatrixAt(this->Transforms, row) =
+          isStill ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : ProjectOnRotations(covariance);
       }
     });
 }

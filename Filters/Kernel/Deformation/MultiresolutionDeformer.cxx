@@ -24,8 +24,9 @@ Eigen::Vector3d RingNormal(const TriangleMesh& mesh, const Points& points, int v
     {
       const Eigen::Vector3d edge = points.row(mesh.Neighbor(d)) - points.row(v);
       const Eigen::Vector3d next = points.row(mesh.Opposite(d)) - points.row(v);
-      sum += edge.cross(next);
-      size += edge.cross(next).norm();
+      const Eigen::Vector3d areaVector = edge.cross(next);
+      sum += areaVector;
+      size += areaVector.norm();
     }
   }
   return sum.norm() > 1e-12 * size ? Eigen::Vector3d(sum.normalized())
@@ -48,9 +49,10 @@ double RingRadius(const TriangleMesh& mesh, const Points& points, int v)
 }
 
 /// What FitRotations has at one vertex, at no cost for the others, minus the
-/// identity; exactly zero where the displacements are all the same.
-Eigen::Matrix3d FitChange(const TriangleMesh& mesh, const Points& reference, const Points& current,
-  const Points& displacements, int v)
+/// identity; exactly zero where the displacements are all the same. `normal` is that
+/// of the reference.
+Eigen::Matrix3d FitChange(const TriangleMesh& mesh, const Points& reference,
+  const Eigen::RowVector3d& normal, const Points& current, const Points& displacements, int v)
 {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double size = 0.0;
@@ -62,7 +64,7 @@ Eigen::Matrix3d FitChange(const TriangleMesh& mesh, const Points& reference, con
     const Eigen::RowVector3d change = displacements.row(w) - displacements.row(v);
     const Eigen::RowVector3d after = before + change;
     covariance += after.transpose() * before;
-    size += before.norm() * after.norm();
+    size += std::sqrt(before.squaredNorm() * after.squaredNorm());
     isStill = isStill && change.isZero(0.0);
   }
   if (isStill || !(size > 0.0))
@@ -70,7 +72,7 @@ Eigen::Matrix3d FitChange(const TriangleMesh& mesh, const Points& reference, con
     return Eigen::Matrix3d::Zero();
   }
   // The edges of a flat ring leave the rotation to rounding; the normal settles it.
-  covariance += size * RingNormal(mesh, current, v) * RingNormal(mesh, reference, v).transpose();
+  covariance += size * RingNormal(mesh, current, v) * normal;
   return ProjectOnRotations(covariance / size) - Eigen::Matrix3d::Identity();
 }
 }
@@ -89,6 +91,14 @@ MultiresolutionDeformer::MultiresolutionDeformer(
   this->System.Solve(-this->System.Apply(this->System.Gather(*this->Problem.Rest)), this->RestBase);
   this->RestBase += *this->Problem.Rest;
   this->PrepareSpreading(context.Part(0.8, 1.0));
+  // Frames of held vertices are needed to spread from alone.
+  this->RestNormals.resize(
+    this->NumberOfSpread ? this->System.NumberWithin(1) : this->System.NumberOfUnknowns(), 3);
+  for (Eigen::Index i = 0; i < this->RestNormals.rows(); ++i)
+  {
+    this->RestNormals.row(i) =
+      RingNormal(*this->Problem.Mesh, this->RestBase, this->System.GetVertices()[i]).transpose();
+  }
   context.Report(1.0);
 }
 
@@ -141,9 +151,7 @@ void MultiresolutionDeformer::PrepareSpreading(const ExecutionContext& context)
 void MultiresolutionDeformer::FitFrames(
   const Points& base, const Points& displacements, const ExecutionContext& context)
 {
-  // Frames of held vertices are needed to spread from alone.
-  const int numberOfFrames =
-    this->NumberOfSpread ? this->System.NumberWithin(1) : this->System.NumberOfUnknowns();
+  const int numberOfFrames = static_cast<int>(this->RestNormals.rows());
   const std::vector<int>& vertices = this->System.GetVertices();
   this->Changes.resize(numberOfFrames, 9);
   context.For(numberOfFrames,
@@ -151,8 +159,8 @@ void MultiresolutionDeformer::FitFrames(
     {
       for (int i = begin; i < end; ++i)
       {
-        MatrixAt(this->Changes, i) =
-          FitChange(*this->Problem.Mesh, this->RestBase, base, displacements, vertices[i]);
+        MatrixAt(this->Changes, i) = FitChange(*this->Problem.Mesh, this->RestBase,
+          this->RestNormals.row(i), base, displacements, vertices[i]);
       }
     });
   if (this->NumberOfSpread == 0)

@@ -43,7 +43,7 @@ public:
   std::size_t GetBytes() const override
   {
     return this->GetBaseBytes() + this->System.GetBytes() + this->Spreading.GetBytes() +
-      TotalBytes(this->MovingHandles, this->Zero, this->RestBase, this->Changes);
+      TotalBytes(this->MovingHandles, this->Zero, this->RestBase, this->RestNormals, this->Changes);
   }
 
 protected:
@@ -61,6 +61,7 @@ private:
   std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
   Points Zero;                    ///< #locals x 3, the right-hand side
   Points RestBase;                ///< #V x 3
+  Points RestNormals;             ///< of the base's vertices that have a frame: #frames x 3
   /// The frames' rotations minus the identity, of the unknowns and the locals next
   /// to them: #x 9.
   Matrices Changes;
