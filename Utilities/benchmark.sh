@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Configures, builds and runs the benchmarks in build/benchmarks: similarity
-# editing, as-rigid-as-possible deformation and morphs, each with a table of what
-# was asked and what was measured, then the motions of the linear methods by Google
-# Benchmark, with such a table at the end. Arguments are Google Benchmark's, for
+# editing, as-rigid-as-possible deformation, the methods of differential coordinates
+# and morphs, each with a table of what was asked and what was measured, then the
+# motions of rotation-invariant and shape-preserving editing by Google Benchmark, with
+# such a table at the end. Arguments are Google Benchmark's, for
 # example --benchmark_filter=104K. Takes about ten minutes and means something
 # only on a machine that does nothing else.
 set -euo pipefail
@@ -15,5 +16,6 @@ cmake -S . -B build/benchmarks -G Ninja -DCMAKE_BUILD_TYPE=Release \
 cmake --build build/benchmarks --target benchmarks
 build/benchmarks/bin/CartanBenchmarkSimilarity
 build/benchmarks/bin/CartanBenchmarkAsRigidAsPossible
+build/benchmarks/bin/CartanBenchmarkDifferential
 build/benchmarks/bin/CartanBenchmarkMorph
 build/benchmarks/bin/CartanBenchmarkDeformation "$@"
