@@ -47,7 +47,8 @@ Anchors Anchors::Repeated(int count) const
 void AnchoredSystem::Factorize(
   const SparseMatrix& matrix, Anchors anchors, const ExecutionContext& context)
 {
-  this->Stiffness = std::move(anchors.Stiffness);
+  // Solves need not add zeros.
+  this->Stiffness = anchors.Stiffness.isZero(0.0) ? Eigen::VectorXd() : anchors.Stiffness;
   this->RightHandSide = SparseMatrix();
   this->Solver.Factorize(matrix, anchors.IsHard, this->Stiffness, anchors.Vertices, context);
 }

@@ -26,7 +26,7 @@ struct ConjugateGradientsResult
 /// `reduction` the part of r^T M^-1 r that is left.
 template <typename Columns, typename Apply, typename Precondition, typename Progress>
 ConjugateGradientsResult ConjugateGradients(Columns& solution, Columns residual, const Apply& apply,
-  const Precondition& precondition, const ConjugateGradientsGoal& goal, const Progress& progress)
+  Precondition&& precondition, const ConjugateGradientsGoal& goal, const Progress& progress)
 {
   Columns direction = precondition(residual);
   double product = residual.cwiseProduct(direction).sum();

@@ -50,13 +50,15 @@ Eigen::Vector3d NearestTurn(const Eigen::Vector3d& vector, const Eigen::Vector3d
   return (other - guess).norm() < (1.0 - 1e-9) * (vector - guess).norm() ? other : vector;
 }
 
-/// Whether two handles' motions are the same to rounding, full turns included; `size`
-/// is that of the surface.
-bool AreSame(const HandleMotion& a, const HandleMotion& b, double size)
+/// Whether two handles' motions of a surface are the same to rounding, full turns
+/// included.
+bool AreSame(const HandleMotion& a, const HandleMotion& b, const Points& rest)
 {
+  // Looks at the surface last, which takes longest.
   return (a.Linear - b.Linear).norm() <= SameMotion &&
-    (a.Translation - b.Translation).norm() <= SameMotion * (size + a.Translation.norm()) &&
-    (a.RotationVector - b.RotationVector).norm() <= 1e-6;
+    (a.RotationVector - b.RotationVector).norm() <= 1e-6 &&
+    (a.Translation - b.Translation).norm() <=
+    SameMotion * (rest.cwiseAbs().maxCoeff() + a.Translation.norm());
 }
 
 bool IsRigid(const HandleMotion& motion)
@@ -345,7 +347,6 @@ HandleTargets CommonMotion::Remove(const HandleTargets& targets)
 /// Whether all handles that a region sees make one rigid motion: #regions.
 std::vector<char> CommonMotion::RigidRegions(const HandleTargets& relative) const
 {
-  const double size = this->Problem.Rest->cwiseAbs().maxCoeff();
   std::vector<char> isRigid;
   for (int region = 0; region < this->Regions.NumberOfRegions(); ++region)
   {
@@ -353,7 +354,10 @@ std::vector<char> CommonMotion::RigidRegions(const HandleTargets& relative) cons
     isRigid.push_back(!handles.empty() && IsRigid(MotionOf(relative, handles.back())) &&
       std::all_of(handles.begin(), handles.end(),
         [&](int k)
-        { return AreSame(MotionOf(relative, k), MotionOf(relative, handles.back()), size); }));
+        {
+          return AreSame(
+            MotionOf(relative, k), MotionOf(relative, handles.back()), *this->Problem.Rest);
+        }));
   }
   return isRigid;
 }

@@ -46,28 +46,46 @@ void ClearGiven(const std::vector<char>& isGiven, Columns& columns)
   }
 }
 
-/// The unknown X_i is S_i^T Y_i in the gauge of the start's frames S_i, where the
-/// frames' matrix is close to 2 L on each of the nine entries of Y.
-Columns Precondition(const Matrices& start, const AnchoredSystem& laplacian,
-  const std::vector<char>& isGiven, const Columns& residual)
+/// Next to the inverse of the frames' matrix: the unknown X_i is S_i^T Y_i in the
+/// gauge of the start's frames S_i, where the matrix is close to 2 L on each of the
+/// nine entries of Y.
+class FramePreconditioner
 {
-  Field turned(start.rows(), 9);
-  for (Eigen::Index v = 0; v < start.rows(); ++v)
+public:
+  FramePreconditioner(
+    const Matrices& start, const AnchoredSystem& laplacian, const std::vector<char>& isGiven)
+    : Start(start)
+    , Laplacian(laplacian)
+    , IsGiven(isGiven)
+    , Turned(start.rows(), 9)
+    , Solved(Field::Zero(start.rows(), 9))
   {
-    Eigen::Map<Eigen::Matrix3d>(turned.row(v).data()) =
-      MatrixAt(start, v) * residual.middleRows<3>(3 * v);
   }
-  Field solved = Field::Zero(start.rows(), 9);
-  laplacian.Solve(turned, solved);
-  Columns result(residual.rows(), 3);
-  for (Eigen::Index v = 0; v < start.rows(); ++v)
+
+  Columns operator()(const Columns& residual)
   {
-    result.middleRows<3>(3 * v) = 0.5 * MatrixAt(start, v).transpose() *
-      Eigen::Map<const Eigen::Matrix3d>(solved.row(v).data());
+    for (Eigen::Index v = 0; v < this->Start.rows(); ++v)
+    {
+      MatrixAt(this->Turned, v) = MatrixAt(this->Start, v) * residual.middleRows<3>(3 * v);
+    }
+    this->Laplacian.Solve(this->Turned, this->Solved);
+    Columns result(residual.rows(), 3);
+    for (Eigen::Index v = 0; v < this->Start.rows(); ++v)
+    {
+      result.middleRows<3>(3 * v) =
+        0.5 * MatrixAt(this->Start, v).transpose() * MatrixAt(this->Solved, v);
+    }
+    ClearGiven(this->IsGiven, result);
+    return result;
   }
-  ClearGiven(isGiven, result);
-  return result;
-}
+
+private:
+  const Matrices& Start;
+  const AnchoredSystem& Laplacian;
+  const std::vector<char>& IsGiven;
+  Matrices Turned;
+  Matrices Solved; ///< zero where frames are given
+};
 
 /// That of a directed edge, 1 where none are given.
 double WeightOf(const Eigen::VectorXd& weights, int d)
@@ -151,13 +169,12 @@ Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transition
     ClearGiven(isGiven, image);
     return image;
   };
+  FramePreconditioner precondition(start, laplacian, isGiven);
   Columns solution = TransposedFrames(start);
   // Transitions that fit the start exactly leave rounding only.
   const double rounding = std::numeric_limits<double>::epsilon() * solution.norm();
-  const ConjugateGradientsResult result = ConjugateGradients(
-    solution, Columns(-apply(solution)), apply,
-    [&](const Columns& residual) { return Precondition(start, laplacian, isGiven, residual); },
-    { 1e-10, maximumSteps, rounding * rounding },
+  const ConjugateGradientsResult result = ConjugateGradients(solution, Columns(-apply(solution)),
+    apply, precondition, { 1e-10, maximumSteps, rounding * rounding },
     [&](int step, double) { context.Report(static_cast<double>(step) / maximumSteps); });
   if (!result.HasConverged)
   {
