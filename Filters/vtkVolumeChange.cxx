@@ -90,6 +90,25 @@ double WithoutRounding(const cartan::ComponentVolume& component)
   return std::abs(component.Volume) > limit ? component.Volume : 0.0;
 }
 
+/// A sum that knows what of it is rounding.
+class Total
+{
+public:
+  void Add(double value)
+  {
+    this->Sum += value;
+    this->SumOfSizes += std::abs(value);
+  }
+  double WithoutRounding() const
+  {
+    return std::abs(this->Sum) > 1e-12 * this->SumOfSizes ? this->Sum : 0.0;
+  }
+
+private:
+  double Sum = 0.0;
+  double SumOfSizes = 0.0;
+};
+
 std::string DescribeSigns(double reference, double current, const std::string& meaning)
 {
   if (reference < 0.0 && current < 0.0)
@@ -135,14 +154,15 @@ std::string DescribeBorders(const cartan::CoincidentBorders& borders)
 /// The volume of everything; NaN unless all components are closed.
 double AddVolume(const Changes& changes, ChangeTable& table)
 {
-  double volumeBefore = 0.0;
-  double volumeNow = 0.0;
+  // Volumes of both signs may cancel, as those of the two sides of a shell.
+  Total before;
+  Total now;
   std::size_t open = 0;
   const std::size_t count = changes.ComponentsBefore.size();
   for (std::size_t i = 0; i < count; ++i)
   {
-    volumeBefore += WithoutRounding(changes.ComponentsBefore[i]);
-    volumeNow += WithoutRounding(changes.ComponentsNow[i]);
+    before.Add(WithoutRounding(changes.ComponentsBefore[i]));
+    now.Add(WithoutRounding(changes.ComponentsNow[i]));
     open += changes.ComponentsBefore[i].IsClosed ? 0 : 1;
   }
   if (open > 0)
@@ -153,6 +173,8 @@ double AddVolume(const Changes& changes, ChangeTable& table)
     table.Add("Volume", Undefined, Undefined, Undefined, note + DescribeBorders(changes.Borders));
     return Undefined;
   }
+  const double volumeBefore = before.WithoutRounding();
+  const double volumeNow = now.WithoutRounding();
   return table.Add("Volume", volumeBefore, volumeNow,
     DescribeSigns(volumeBefore, volumeNow, "the surface is oriented inward"));
 }

@@ -28,8 +28,9 @@ TASKS = ([name + "Deformation" for name in DEFORMATIONS]
 
 
 def bounds_axis(surface):
-    """The longest axis of the bounding box, with its two ends."""
-    bounds = surface.GetBounds()
+    """The longest axis of the bounding box of what cells use, with its two ends."""
+    bounds = [0.0] * 6
+    surface.GetCellsBounds(bounds)
     axis = max(range(3), key=lambda i: bounds[2 * i + 1] - bounds[2 * i])
     return axis, bounds[2 * axis], bounds[2 * axis + 1]
 
@@ -154,7 +155,6 @@ def work(path, done):
         if state == "after":
             prepare = vtkcartan.vtkPrepareSurface()
             prepare.SetInputData(surface)
-            result = "", ""
             prepare.AddObserver("ErrorEvent", lambda *_: None)
             prepare.Update()
             surface = prepare.GetOutput()

@@ -9,6 +9,7 @@
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkTriangleFilter.h"
@@ -179,7 +180,10 @@ std::vector<char> BrokenPolygons(
 /// taken for equal ones, from corner 1 to 3.
 std::vector<char> EvenQuads(vtkPolyData* input)
 {
-  constexpr double even = 1e-6; // of squares; what single precision leaves of a rectangle
+  constexpr double even = 1e-6; // of squares: beyond what a file's six digits tell
+  const bool isFloat = input->GetPoints()->GetDataType() == VTK_FLOAT;
+  const double digits =
+    isFloat ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
   std::vector<char> isEven(input->GetNumberOfPolys(), 0);
   vtkNew<vtkIdList> ids;
   for (std::size_t polygon = 0; polygon < isEven.size(); ++polygon)
@@ -198,8 +202,15 @@ std::vector<char> EvenQuads(vtkPolyData* input)
     const double second = (x[3] - x[1]).squaredNorm();
     const Eigen::Vector3d normal = (x[1] - x[0]).cross(x[3] - x[0]);
     const Eigen::Vector3d other = (x[3] - x[2]).cross(x[1] - x[2]);
+    // What rounding of the coordinates makes of the difference of the squares.
+    double largest = 0.0;
+    for (const Eigen::Vector3d& point : x)
+    {
+      largest = std::max(largest, point.cwiseAbs().maxCoeff());
+    }
+    const double rounding = 8.0 * digits * largest * std::sqrt(first + second);
     isEven[polygon] =
-      std::abs(first - second) <= even * (first + second) && normal.dot(other) > 0.0;
+      std::abs(first - second) <= even * (first + second) + rounding && normal.dot(other) > 0.0;
   }
   return isEven;
 }

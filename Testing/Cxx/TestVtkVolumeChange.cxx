@@ -224,6 +224,24 @@ TEST_F(VolumeChange, FlatReferencesHaveNoRelativeChange)
   EXPECT_TRUE(std::isfinite(this->Filter->GetShapeDistance()));
 }
 
+TEST_F(VolumeChange, VolumesThatCancelAreZeroWhereverTheSurfaceIs)
+{
+  // Both sides of a shell: what is left of the sum is rounding.
+  const shapes::Shape ball = shapes::Icosphere(2);
+  const shapes::Shape shell = shapes::Union(ball, shapes::Inverted(ball));
+  for (unsigned int seed = 1; seed < 10; ++seed)
+  {
+    shapes::Shape moved = shapes::RandomRigidMotion(seed, 3.0)(shell);
+    const auto reference = vtktest::MakePolyData(moved);
+    moved.Positions.col(0) *= 1.3;
+    this->Compare(vtktest::MakePolyData(moved), reference);
+    EXPECT_EQ(this->Rows()["Volume"].Reference, 0.0) << seed;
+    EXPECT_EQ(this->Rows()["Volume"].Current, 0.0) << seed;
+    EXPECT_TRUE(std::isnan(this->Filter->GetRelativeVolumeChange())) << seed;
+    EXPECT_NEAR(this->Rows()["Volume of component 1"].RelativeChange, 0.3, 1e-12) << seed;
+  }
+}
+
 TEST_F(VolumeChange, TrianglesWithoutAreaAreWarnedOf)
 {
   const surfaces::Surface torus = surfaces::Torus(12, 8);

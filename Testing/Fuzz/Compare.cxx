@@ -25,7 +25,9 @@ bool MayBeNaN(const std::string& name)
 /// Fields whose values depend on more than the surface, or whose sign is arbitrary.
 bool IsComparable(const Field& field, const Relation& relation)
 {
-  if (field.Name.find("CurvatureDirection") != std::string::npos)
+  // Of bodies that enclose next to nothing, rounding decides which side is outside.
+  if (field.Name.find("CurvatureDirection") != std::string::npos ||
+    field.Name == "ReversedComponents")
   {
     return false;
   }
@@ -51,6 +53,12 @@ bool IsComparable(const Field& field, const Relation& relation)
 bool IsHalfTurn(const Field& field, const Eigen::RowVectorXd& value)
 {
   return field.Name == "RotationVector" && std::abs(value.norm() - 3.14159265) < 1e-2;
+}
+
+/// The frames of points in no triangle are the coordinate axes, wherever those are.
+bool IsAxis(const Field& field, const Eigen::RowVectorXd& value)
+{
+  return field.Name.compare(0, 5, "Frame") == 0 && value.cwiseAbs().maxCoeff() == 1.0;
 }
 
 /// The largest difference of two rows, infinite if only one is finite.
@@ -201,7 +209,8 @@ Difference CompareField(
     const Eigen::Index other = isMapped ? relation.Order[static_cast<std::size_t>(i)] : i;
     double distance = Distance(expected.row(i), second.Values.row(other));
     distance = std::max(0.0, distance - (isOfPoints ? relation.PointTolerance : 0.0)) / scale;
-    if (distance > worst.Size && !IsHalfTurn(first, expected.row(i)))
+    if (distance > worst.Size && !IsHalfTurn(first, expected.row(i)) &&
+      !IsAxis(first, first.Values.row(i)))
     {
       worst = { first.Name, distance, i };
     }
