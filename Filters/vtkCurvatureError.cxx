@@ -112,12 +112,13 @@ void vtkCurvatureError::Compare(const cartan::SurfacePair& pair, cartan::FilterR
     [&]
     {
       const cartan::Curvatures fitted =
-        cartan::FitCurvatures(*pair.Mesh, *pair.Reference, run.Context().Part(0.1, 0.5));
+        cartan::FitCurvatures(*pair.Mesh, *pair.Reference, run.Context().Part(0.1, 0.45));
       auto kept = std::make_unique<ReferenceCurvatures>();
       kept->Mean = fitted.Mean;
       kept->Gaussian = fitted.Gaussian;
       kept->Warning = DescribeUndetermined(fitted.IsDetermined, "reference");
-      kept->Areas = cartan::MixedVoronoiAreas(*pair.Mesh, *pair.Reference, run.Context());
+      kept->Areas =
+        cartan::MixedVoronoiAreas(*pair.Mesh, *pair.Reference, run.Context().Part(0.45, 0.5));
       return kept;
     });
   const cartan::Curvatures now =

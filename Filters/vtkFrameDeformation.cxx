@@ -122,15 +122,14 @@ void vtkFrameDeformation::AddVolumeArrays(const cartan::FrameDeformer& deformer,
         [&]
         {
           return std::make_unique<cartan::LocalVolumes>(
-            problem.GetWhole(), *problem.Rest, run.Context().Part(0.95, 0.98));
+            problem.GetWhole(), *problem.Rest, run.Context().Part(0.95, 0.97));
         });
-      volume = LocalVolumesOf(problem, model, *volumes, result.Positions, run.Context());
+      volume =
+        LocalVolumesOf(problem, model, *volumes, result.Positions, run.Context().Part(0.97, 0.98));
     }
     cartan::AddPointArray(output, "LocalDepth", depth);
     cartan::AddPointArray(output, "LocalVolume", volume);
-    cartan::AddPointArray(output, "VolumeScale",
-      result.FrameScale.size() == size ? result.FrameScale
-                                       : Eigen::VectorXd(Eigen::VectorXd::Ones(size)));
+    cartan::AddPointArray(output, "VolumeScale", result.FrameScale);
   }
   if (this->GenerateShapeDistance)
   {

@@ -75,7 +75,7 @@ std::unique_ptr<PreparedMorph> Prepare(const MatchedSurfaces& matched,
 Points PositionsAt(double t, vtkPolyData* first, const MorphOptions& options,
   const ContentKey& preparedKey, PreparedMorph& prepared, FilterRun& run)
 {
-  Points positions = prepared.Morph->Evaluate(t, run.Context().Part(0.7, 0.95));
+  Points positions = prepared.Morph->Evaluate(t, run.Context().Part(0.7, 0.9));
   run.Warn(prepared.Morph->GetWarning());
   if (options.NeedsPlacement)
   {
@@ -86,7 +86,7 @@ Points PositionsAt(double t, vtkPolyData* first, const MorphOptions& options,
       {
         return std::make_unique<RigidPlacement>(prepared.Keys,
           options.IsPinned ? PinWeights(prepared.Keys, ReadPinned(first, options.HandleArray))
-                           : AreaWeights(prepared.Keys, run.Context()));
+                           : AreaWeights(prepared.Keys, run.Context().Part(0.9, 0.9)));
       });
     placement->Place(t, positions);
   }
@@ -94,7 +94,7 @@ Points PositionsAt(double t, vtkPolyData* first, const MorphOptions& options,
   {
     if (!prepared.Volume)
     {
-      prepared.Volume = std::make_unique<MorphVolume>(prepared.Keys, run.Context());
+      prepared.Volume = std::make_unique<MorphVolume>(prepared.Keys, run.Context().Part(0.9, 0.95));
     }
     run.Warn(prepared.Volume->GetWarning());
     run.Warn(prepared.Volume->Close(t, positions));

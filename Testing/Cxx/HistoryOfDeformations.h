@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "History.h"
+
+#include "vtkAsRigidAsPossibleDeformation.h"
+#include "vtkHandleMotion.h"
+#include "vtkLaplacianDeformation.h"
+#include "vtkMultiresolutionDeformation.h"
+#include "vtkPoissonDeformation.h"
+#include "vtkRotationInvariantDeformation.h"
+#include "vtkShapePreservingDeformation.h"
+#include "vtkSimilarityDeformation.h"
+
+#include "Kernel/Algebra/CholeskyFactor.h"
+
+namespace history
+{
+inline vtkSmartPointer<vtkHandleMotion> MotionOf(int id, int value)
+{
+  auto motion = vtkSmartPointer<vtkHandleMotion>::New();
+  motion->SetAngle(20.0 * value);
+  motion->SetAxis(1.0, 0.1 * id, 0.0);
+  motion->SetTranslation(0.1 * id, 0.0, 0.0);
+  return motion;
+}
+
+/// None, one or two motions; in three ways: all by id, one of them as the active
+/// one, and that of handle 2 as a row of the table.
+inline Choice MotionChoice()
+{
+  return Of<vtkSurfaceDeformation>(18,
+    [](vtkSurfaceDeformation* filter, int value)
+    {
+      const int motions = value % 6;
+      filter->RemoveAllHandleMotions();
+      filter->SetNumberOfMotionRows(0);
+      for (int id = 1; id <= 2; ++id)
+      {
+        if (motions % (id + 1) > 0 || motions == 0)
+        {
+          filter->SetHandleMotion(id, MotionOf(id, motions));
+        }
+      }
+      if (value / 6 == 1)
+      {
+        filter->SetActiveHandle(1 + value % 2);
+        filter->SetActiveMotion(MotionOf(3, motions));
+      }
+      if (value / 6 == 2)
+      {
+        filter->RemoveHandleMotion(2);
+        filter->SetMotionRow(
+          0, 2.0, 1.0, 1.1, 1.0, 10.0 * motions, 0.0, 0.0, 1.0, 0.0, 0.0, 3.0, 0.0, 0.2, 0.0);
+      }
+    });
+}
+
+template <typename Filter>
+std::vector<Choice> DeformationChoices(std::vector<Choice> own = {})
+{
+  using Base = vtkSurfaceDeformation;
+  std::vector<Choice> choices = { InputChoice(), MotionChoice(),
+    Enumeration<Base>(3, &Base::SetLaplacianWeights),
+    Enumeration<Base>(cartan::HasCholmod() ? 3 : 2, &Base::SetSolver),
+    Name<Base>(&Base::SetHandleArrayName, { "Handle", "Other", "Handle", "Weight" }),
+    Name<Base>(&Base::SetTargetPositionArrayName, { "", "Target" }),
+    Of<Base>(6, // most often neither: not all methods accept them, none accepts both
+      [](Base* filter, int value)
+      {
+        filter->SetRotationVectorArrayName(value == 1 || value == 3 ? "Turn" : "");
+        filter->SetTransformArrayName(value == 2 || value == 3 ? "Transform" : "");
+      }),
+    Name<Base>(&Base::SetConstraintWeightArrayName, { "", "Weight" }),
+    Switch<Base>(&Base::SetScaleConstraintWeights),
+    Of<Base>(2, [](Base* filter, int value) { filter->SetConstrainHandlePositions(value == 0); }),
+    Switch<Base>(&Base::SetGenerateFrameChange), Switch<Base>(&Base::SetGenerateRotationVector) };
+  choices.insert(choices.end(), own.begin(), own.end());
+  return choices;
+}
+
+template <typename Filter>
+std::vector<Choice> FrameChoices(std::vector<Choice> own = {})
+{
+  using Base = vtkFrameDeformation;
+  own.push_back(Enumeration<Base>(3, &Base::SetVolumeCorrection));
+  own.push_back(Switch<Base>(&Base::SetCloseVolume));
+  own.push_back(Enumeration<Base>(4, &Base::SetPositionWeights));
+  own.push_back(Switch<Base>(&Base::SetGenerateVolumeArrays));
+  own.push_back(Switch<Base>(&Base::SetGenerateShapeDistance));
+  return DeformationChoices<Filter>(std::move(own));
+}
+
+inline Subject AsRigidAsPossible()
+{
+  using Filter = vtkAsRigidAsPossibleDeformation;
+  return Make<Filter>("AsRigidAsPossible",
+    DeformationChoices<Filter>({ Enumeration<Filter>(3, &Filter::SetEnergy),
+      // PREVIOUS_RESULT depends on the way by its definition.
+      Of<Filter>(3, [](Filter* f, int value) { f->SetInitialGuess(value ? value + 1 : 0); }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetMaximumIterations(1 + 3 * value); }),
+      Number<Filter>(&Filter::SetBending, { 0.1, 0.0, 1.0 }),
+      Number<Filter>(&Filter::SetTolerance, { 0.0, 0.5 }),
+      Switch<Filter>(&Filter::SetGenerateRigidityEnergy) }));
+}
+
+inline Subject Similarity()
+{
+  using Filter = vtkSimilarityDeformation;
+  return Make<Filter>("Similarity",
+    DeformationChoices<Filter>(
+      { Of<Filter>(2, [](Filter* f, int value) { f->SetCoherenceRings(1 + value); }),
+        Enumeration<Filter>(3, &Filter::SetReconstruction),
+        Enumeration<Filter>(2, &Filter::SetRefits),
+        Switch<Filter>(&Filter::SetConstrainHandleTransforms),
+        Switch<Filter>(&Filter::SetScaleFeatures),
+        Switch<Filter>(&Filter::SetGenerateScaleFactor) }));
+}
+
+inline std::vector<Subject> DeformationSubjects()
+{
+  using RotationInvariant = vtkRotationInvariantDeformation;
+  using ShapePreserving = vtkShapePreservingDeformation;
+  using Laplacian = vtkLaplacianDeformation;
+  using Multiresolution = vtkMultiresolutionDeformation;
+  return {
+    Make<RotationInvariant>("RotationInvariant",
+      FrameChoices<RotationInvariant>(
+        { Enumeration<RotationInvariant>(3, &RotationInvariant::SetFrameProjection) })),
+    Make<ShapePreserving>("ShapePreserving",
+      FrameChoices<ShapePreserving>(
+        { Of<ShapePreserving>(
+            3, [](ShapePreserving* f, int value) { f->SetMaximumIterations(1 + value); }),
+          Number<ShapePreserving>(&ShapePreserving::SetTolerance, { 1e-6, 0.5 }) })),
+    Make<vtkPoissonDeformation>("Poisson",
+      FrameChoices<vtkPoissonDeformation>(
+        { Enumeration<vtkPoissonDeformation>(2, &vtkPoissonDeformation::SetPropagation) })),
+    Similarity(),
+    Make<Laplacian>("Laplacian",
+      DeformationChoices<Laplacian>({ Enumeration<Laplacian>(3, &Laplacian::SetRotations),
+        Of<Laplacian>(2, [](Laplacian* f, int value) { f->SetRounds(2 + value); }) })),
+    Make<Multiresolution>("Multiresolution",
+      DeformationChoices<Multiresolution>({ Of<Multiresolution>(
+        3, [](Multiresolution* f, int value) { f->SetSmoothness(1 + value); }) })),
+    AsRigidAsPossible(),
+  };
+}
+}

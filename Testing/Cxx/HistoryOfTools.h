@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "History.h"
+
+#include "vtkCurvatureError.h"
+#include "vtkDiscreteForms.h"
+#include "vtkFrameReconstruction.h"
+#include "vtkHandleMotion.h"
+#include "vtkMarkHandle.h"
+#include "vtkPrepareSurface.h"
+#include "vtkRestoreSurface.h"
+#include "vtkRotationInvariantDeformation.h"
+#include "vtkSurfaceMorph.h"
+#include "vtkVolumeChange.h"
+
+#include "vtkAppendPolyData.h"
+#include "vtkBox.h"
+#include "vtkClipPolyData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkPlane.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+
+namespace history
+{
+/// A filter upstream of a subject, whose own complaints are not the law's matter.
+template <typename Filter>
+vtkSmartPointer<Filter> Upstream()
+{
+  auto filter = vtkSmartPointer<Filter>::New();
+  vtktest::Observe(filter);
+  return filter;
+}
+
+template <typename Filter>
+Subject Comparison(const std::string& name, const Choice& own)
+{
+  return Make<Filter>(name, { InputChoice(0), InputChoice(1), own });
+}
+
+/// Two to four key frames of one connectivity, some in single precision, or the
+/// time steps of one input.
+inline Choice KeyFrames()
+{
+  const std::vector<std::vector<int>> keys = { { 0, 2 }, { 2, 0 }, { 0, 2, 3 }, { 3, 0, 2, 0 },
+    { 4, 4 }, { 0, 3, 2 } };
+  return { static_cast<int>(keys.size()),
+    [keys](vtkAlgorithm* filter, int value, Surfaces& surfaces)
+    {
+      filter->RemoveAllInputConnections(0);
+      vtkNew<TimeSteps> source;
+      for (const int key : keys[value])
+      {
+        source->Steps.push_back(surfaces[key]);
+      }
+      if (value == 5)
+      {
+        filter->AddInputConnection(0, source->GetOutputPort());
+        return;
+      }
+      for (const auto& step : source->Steps)
+      {
+        filter->AddInputDataObject(0, step);
+      }
+    } };
+}
+
+inline Subject Morph()
+{
+  using Filter = vtkSurfaceMorph;
+  return Make<Filter>("SurfaceMorph",
+    { KeyFrames(), Number<Filter>(&Filter::SetParameter, { 0.0, 0.25, 0.4, 0.75, 1.0, 1.1 }),
+      Enumeration<Filter>(4, &Filter::SetMethod), Enumeration<Filter>(2, &Filter::SetPlacement),
+      Switch<Filter>(&Filter::SetCloseVolume), Enumeration<Filter>(3, &Filter::SetStitching),
+      Enumeration<Filter>(3, &Filter::SetFrameSolver),
+      Enumeration<Filter>(2, &Filter::SetTransitionInterpolation),
+      Enumeration<Filter>(2, &Filter::SetLengthPolish), Switch<Filter>(&Filter::SetFollowTime),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetStepsBetweenKeyFrames(1 + 2 * value); }),
+      Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "Other" }) });
+}
+
+/// Every `stride`-th point.
+inline vtkSmartPointer<vtkSelection> SelectEvery(int stride)
+{
+  vtkNew<vtkIdTypeArray> ids;
+  for (vtkIdType v = 0; v < 60; v += stride)
+  {
+    ids->InsertNextValue(v);
+  }
+  vtkNew<vtkSelectionNode> node;
+  node->SetFieldType(vtkSelectionNode::POINT);
+  node->SetContentType(vtkSelectionNode::INDICES);
+  node->SetSelectionList(ids);
+  auto selection = vtkSmartPointer<vtkSelection>::New();
+  selection->AddNode(node);
+  return selection;
+}
+
+inline Subject Mark()
+{
+  using Filter = vtkMarkHandle;
+  return Make<Filter>("MarkHandle",
+    { InputChoice(),
+      Of<Filter>(3,
+        [](Filter* filter, int value)
+        {
+          vtkNew<vtkBox> box;
+          box->SetBounds(-9.0, 9.0, -9.0, 9.0, 1.0 + value, 2.0 + value);
+          filter->SetRegion(box);
+        }),
+      Of<Filter>(3,
+        [](Filter* filter, int value)
+        { filter->SetSelectionData(value ? SelectEvery(value + 2).Get() : nullptr); }),
+      Enumeration<Filter>(4, &Filter::SetRegionSource), Switch<Filter>(&Filter::SetInsideOut),
+      Switch<Filter>(&Filter::SetOverwrite), Enumeration<Filter>(3, &Filter::SetHandleId),
+      Enumeration<Filter>(3, &Filter::SetGrowRings),
+      Number<Filter>(&Filter::SetGrowDistance, { 0.0, 1.0 }),
+      Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "Other", "Target" }) });
+}
+
+inline Subject Reconstruction()
+{
+  using Filter = vtkFrameReconstruction;
+  // Filters, because the surfaces may be edited. Output 0 has frames for constraints.
+  const auto formsOf = [](const std::vector<int>& which, int port)
+  {
+    return Choice{ static_cast<int>(which.size()),
+      [which, port](vtkAlgorithm* filter, int value, Surfaces& surfaces)
+      {
+        const auto forms = Upstream<vtkDiscreteForms>();
+        forms->SetInputData(surfaces[which[value]]);
+        filter->SetInputConnection(port, forms->GetOutputPort(port));
+      } };
+  };
+  return Make<Filter>("FrameReconstruction",
+    { formsOf({ 0, 2, 3, 4 }, 0), formsOf({ 0, 2, 3, 1 }, 1),
+      Of<Filter>(3, [](Filter* f, int value) { f->SetSeedPoint(value - 1); }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetSeedPosition(value, 2.0 * value, 0.0); }),
+      Of<Filter>(2,
+        [](Filter* f, int value)
+        {
+          value ? f->SetSeedFrame(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+                : f->SetSeedFrame(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+        }),
+      Name<Filter>(&Filter::SetConstraintArrayName, { "", "Handle" }),
+      Enumeration<Filter>(2, &Filter::SetTransitionMethod),
+      Switch<Filter>(&Filter::SetProjectFrames) });
+}
+
+/// The surfaces, two of them in one place, and one that is cut open.
+inline Choice DirtyInput()
+{
+  return { NumberOfSurfaces + 2,
+    [](vtkAlgorithm* filter, int value, Surfaces& surfaces)
+    {
+      if (value < NumberOfSurfaces)
+      {
+        filter->SetInputDataObject(0, surfaces[value]);
+      }
+      else if (value == NumberOfSurfaces)
+      {
+        vtkNew<vtkAppendPolyData> both;
+        both->AddInputData(surfaces[0]);
+        both->AddInputData(surfaces[2]);
+        filter->SetInputConnection(0, both->GetOutputPort());
+      }
+      else
+      {
+        vtkNew<vtkPlane> plane;
+        plane->SetOrigin(0.0, 0.0, 2.2);
+        plane->SetNormal(0.0, 0.1, 1.0);
+        vtkNew<vtkClipPolyData> open;
+        open->SetInputData(surfaces[0]);
+        open->SetClipFunction(plane);
+        filter->SetInputConnection(0, open->GetOutputPort());
+      }
+    } };
+}
+
+inline Subject Prepare()
+{
+  using Filter = vtkPrepareSurface;
+  return Make<Filter>("PrepareSurface",
+    { DirtyInput(), Switch<Filter>(&Filter::SetMergePoints),
+      Switch<Filter>(&Filter::SetMergeInnerPoints),
+      Number<Filter>(&Filter::SetTolerance, { 0.0, 1e-6, 0.02 }),
+      Switch<Filter>(&Filter::SetToleranceIsAbsolute),
+      Switch<Filter>(&Filter::SetAverageMergedArrays),
+      Switch<Filter>(&Filter::SetDropDoubledTriangles),
+      Switch<Filter>(&Filter::SetOrientConsistently), Switch<Filter>(&Filter::SetCutNonManifold),
+      Switch<Filter>(&Filter::SetOrientOutwards), Switch<Filter>(&Filter::SetAlternateNested),
+      Number<Filter>(&Filter::SetMinimumComponentArea, { 0.0, 0.3 }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetMaximumHoleEdges(100 * value); }),
+      Number<Filter>(&Filter::SetMaximumHoleLength, { 0.0, 1.0 }),
+      Switch<Filter>(&Filter::SetFlipEdges),
+      Number<Filter>(&Filter::SetFlipAngle, { 10.0, 90.0 }) });
+}
+
+/// A surface that was prepared and bent, and the one that it was.
+inline Subject Restore()
+{
+  return Make<vtkRestoreSurface>("RestoreSurface",
+    { { 2 * NumberOfSurfaces,
+        [](vtkAlgorithm* filter, int value, Surfaces& surfaces)
+        {
+          const auto prepare = Upstream<vtkPrepareSurface>();
+          prepare->SetInputData(surfaces[value % NumberOfSurfaces]);
+          prepare->SetMinimumComponentArea(0.1);
+          const auto bend = Upstream<vtkRotationInvariantDeformation>();
+          vtkNew<vtkHandleMotion> motion;
+          motion->SetAngle(value < NumberOfSurfaces ? 30.0 : 60.0);
+          bend->SetHandleMotion(2, motion);
+          bend->SetInputConnection(prepare->GetOutputPort());
+          filter->SetInputConnection(0, bend->GetOutputPort());
+        } },
+      InputChoice(1) });
+}
+
+inline std::vector<Subject> ToolSubjects()
+{
+  return { Comparison<vtkCurvatureError>(
+             "CurvatureError", Switch<vtkCurvatureError>(&vtkCurvatureError::SetComputeDirections)),
+    Comparison<vtkVolumeChange>(
+      "VolumeChange", Switch<vtkVolumeChange>(&vtkVolumeChange::SetComputeLocalVolume)),
+    Make<vtkDiscreteForms>("DiscreteForms", { InputChoice() }), Reconstruction(), Mark(), Morph(),
+    Prepare(), Restore() };
+}
+}
