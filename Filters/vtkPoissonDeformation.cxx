@@ -20,6 +20,11 @@ void vtkPoissonDeformation::AddSettings(cartan::ContentKey& settings) const
   settings.Add(static_cast<std::uint64_t>(this->Propagation));
 }
 
+void vtkPoissonDeformation::RequireTargets(const cartan::HandleTargets& targets) const
+{
+  cartan::PoissonDeformer::RequireMotions(targets);
+}
+
 cartan::DeformationMethod vtkPoissonDeformation::NewFrameMethod(
   const cartan::HandleProblem& problem, cartan::SolverBackend backend,
   const cartan::ExecutionContext& context)

@@ -63,6 +63,7 @@ protected:
 
   cartan::DeformationMethod NewFrameMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
+  void RequireTargets(const cartan::HandleTargets& targets) const override;
   void AddSettings(cartan::ContentKey& settings) const override;
 
 private:

@@ -365,6 +365,27 @@ std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::Filt
 
 void vtkSurfaceDeformation::Execute(cartan::FilterRun& run)
 {
+  try
+  {
+    this->Deform(run);
+  }
+  catch (const Error& error)
+  {
+    throw Error(error.GetCode(), error.what() + this->DescribeRemedy(error.GetCode()));
+  }
+}
+
+std::string vtkSurfaceDeformation::DescribeRemedy(cartan::ErrorCode code) const
+{
+  if (code == ErrorCode::NotPositiveDefinite && this->LaplacianWeights != UNIFORM)
+  {
+    return " Uniform LaplacianWeights avoid that.";
+  }
+  return code == ErrorCode::SolverFailed ? " Choose another Solver." : "";
+}
+
+void vtkSurfaceDeformation::Deform(cartan::FilterRun& run)
+{
   static_assert(static_cast<int>(cartan::SolverBackend::Automatic) == AUTOMATIC_SOLVER &&
       static_cast<int>(cartan::SolverBackend::Eigen) == EIGEN &&
       static_cast<int>(cartan::SolverBackend::Cholmod) == CHOLMOD,
@@ -393,10 +414,11 @@ void vtkSurfaceDeformation::Execute(cartan::FilterRun& run)
   }
   std::sort(moving.begin(), moving.end());
   moving.erase(std::unique(moving.begin(), moving.end()), moving.end());
+  const cartan::HandleTargets targets =
+    cartan::MakeTargets(*surface, moving, motions, *handles, *arrays);
+  this->RequireTargets(targets);
   const auto prepared = this->Prepare(run, surface, *handles, moving, key);
   cartan::SurfaceDeformer& deformer = *prepared->Method.Deformer;
-  const cartan::HandleTargets targets =
-    cartan::MakeTargets(prepared->Problem, surface->Origin, motions, *handles, *arrays);
   const int factorizations = deformer.GetNumberOfFactorizations();
   prepared->Method.Configure(run);
   const double ready = vtkTimerLog::GetUniversalTime();

@@ -46,10 +46,12 @@ namespace cartan
 {
 class ContentKey;
 class ExecutionContext;
+enum class ErrorCode;
 enum class SolverBackend;
 struct DeformationMethod;
 struct HandleArrays;
 struct HandleProblem;
+struct HandleTargets;
 struct Handles;
 struct Preparation;
 struct Surface;
@@ -300,6 +302,12 @@ protected:
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) = 0;
 
   /**
+   * Throws cartan::Error for targets that the method cannot follow, before it is
+   * prepared. Here: accepts all.
+   */
+  virtual void RequireTargets(const cartan::HandleTargets&) const {}
+
+  /**
    * Adds all parameters that NewMethod depends on.
    */
   virtual void AddSettings(cartan::ContentKey& settings) const;
@@ -312,6 +320,8 @@ protected:
 private:
   class Internals;
 
+  void Deform(cartan::FilterRun& run);
+  std::string DescribeRemedy(cartan::ErrorCode code) const;
   cartan::HandleProblem MakeProblem(vtkPolyData* input,
     const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
     std::vector<int> moving) const;

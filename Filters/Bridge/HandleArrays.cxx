@@ -8,6 +8,7 @@
 #include "vtkDataArray.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
@@ -77,7 +78,7 @@ std::vector<int> ReadHandleIds(
   {
     throw Error(ErrorCode::BadInput,
       "The point array \"" + name + "\" has " + bad.Describe("value", "values") +
-        " that are no whole numbers >= 0: " + advice);
+        " that are not whole numbers >= 0: " + advice);
   }
   return handles;
 }
@@ -120,15 +121,28 @@ Handles ReadHandles(vtkPolyData* input, const TriangleMesh& mesh, const std::str
 vtkBoundingBox BoundsOfHandle(vtkPolyData* surface, const std::string& name, int id)
 {
   vtkBoundingBox bounds;
-  vtkDataArray* handles = surface->GetPointData()->GetArray(name.c_str());
-  const vtkIdType count =
-    handles ? std::min(handles->GetNumberOfTuples(), surface->GetNumberOfPoints()) : 0;
-  for (vtkIdType i = 0; i < count; ++i)
+  vtkDataArray* array = surface->GetPointData()->GetArray(name.c_str());
+  if (!array || surface->GetNumberOfPoints() == 0)
   {
-    if (handles->GetComponent(i, 0) == id)
+    return bounds;
+  }
+  try
+  {
+    const std::vector<int> handles = ReadHandleIds(array, name, surface->GetNumberOfPoints());
+    vtkPoints* points = surface->GetPoints();
+    for (std::size_t v = 0; v < handles.size(); ++v)
     {
-      bounds.AddPoint(surface->GetPoint(i));
+      if (handles[v] == id)
+      {
+        double point[3];
+        points->GetPoint(static_cast<vtkIdType>(v), point);
+        bounds.AddPoint(point);
+      }
     }
+  }
+  catch (const Error&)
+  {
+    // An array that the update refuses has no handles.
   }
   return bounds;
 }

@@ -91,11 +91,12 @@ void SetTarget(const HandleMotion& motion, Eigen::Index row, HandleTargets& targ
 }
 
 /// Gives the points of moving handles a row each, which leaves them where they are.
-void AddRows(const HandleProblem& problem, const Handles& handles, HandleTargets& targets)
+void AddRows(const Surface& surface, const std::vector<int>& moving, const Handles& handles,
+  HandleTargets& targets)
 {
   for (std::size_t h = 0; h < handles.Ids.size(); ++h)
   {
-    if (std::binary_search(problem.Moving.begin(), problem.Moving.end(), handles.Ids[h]))
+    if (std::binary_search(moving.begin(), moving.end(), handles.Ids[h]))
     {
       targets.Vertices.insert(targets.Vertices.end(), handles.Points.begin() + handles.Offsets[h],
         handles.Points.begin() + handles.Offsets[h + 1]);
@@ -103,7 +104,7 @@ void AddRows(const HandleProblem& problem, const Handles& handles, HandleTargets
   }
   std::sort(targets.Vertices.begin(), targets.Vertices.end());
   const auto numberOfRows = static_cast<Eigen::Index>(targets.Vertices.size());
-  targets.Positions = (*problem.Rest)(targets.Vertices, Eigen::all);
+  targets.Positions = (*surface.Positions)(targets.Vertices, Eigen::all);
   targets.RotationVectors = Points::Zero(numberOfRows, 3);
   targets.Transforms = Identities(numberOfRows);
 }
@@ -192,22 +193,22 @@ Eigen::VectorXd ReadSoftWeights(vtkPolyData* input, const std::string& name, con
   {
     throw Error(ErrorCode::BadInput,
       "The point array \"" + name + "\" has " + bad.Describe("handle point", "handle points") +
-        " with a weight that is negative or NaN: 0 does not hold, infinity holds exactly.");
+        " with a weight that is negative or NaN: 0 leaves a point free, infinity fixes it.");
   }
   return weights;
 }
 
-HandleTargets MakeTargets(const HandleProblem& problem, const Eigen::Vector3d& origin,
+HandleTargets MakeTargets(const Surface& surface, const std::vector<int>& moving,
   const MotionsById& motions, const Handles& handles, const HandleArrays& arrays)
 {
   HandleTargets targets;
   bool isPerVertex = false;
-  for (const int id : problem.Moving)
+  for (const int id : moving)
   {
     const auto motion = motions.find(id);
     isPerVertex = isPerVertex || motion == motions.end();
     targets.Motions.push_back(
-      motion == motions.end() ? HandleMotion() : ToKernel(motion->second, origin));
+      motion == motions.end() ? HandleMotion() : ToKernel(motion->second, surface.Origin));
     if (motion == motions.end())
     {
       targets.Motions.back().CountsTurns = arrays.Transforms.rows() == 0;
@@ -217,12 +218,12 @@ HandleTargets MakeTargets(const HandleProblem& problem, const Eigen::Vector3d& o
   {
     return targets;
   }
-  AddRows(problem, handles, targets);
+  AddRows(surface, moving, handles, targets);
   for (std::size_t h = 0; h < handles.Ids.size(); ++h)
   {
     const int id = handles.Ids[h];
-    const auto moving = std::lower_bound(problem.Moving.begin(), problem.Moving.end(), id);
-    if (moving == problem.Moving.end() || *moving != id)
+    const auto place = std::lower_bound(moving.begin(), moving.end(), id);
+    if (place == moving.end() || *place != id)
     {
       continue;
     }
@@ -231,7 +232,7 @@ HandleTargets MakeTargets(const HandleProblem& problem, const Eigen::Vector3d& o
       const Eigen::Index row = targets.Row(handles.Points[i]);
       if (motions.count(id))
       {
-        SetTarget(targets.Motions[moving - problem.Moving.begin()], row, targets);
+        SetTarget(targets.Motions[place - moving.begin()], row, targets);
       }
       else
       {

@@ -16,7 +16,7 @@ namespace cartan
 /// The motions of one update, by handle id.
 using MotionsById = std::map<int, vtkHandleMotion*>;
 
-/// Throws Error(BadInput) for motions that move nothing or are no map.
+/// Throws Error(BadInput) for motions that move nothing or are not a map.
 void RequireMeaningfulMotions(const MotionsById& motions, const Handles& handles);
 
 /// The point arrays that move handles point by point, a row per point of
@@ -53,8 +53,8 @@ HandleArrays ReadHandleArrays(vtkPolyData* input, const Surface& surface, const 
 Eigen::VectorXd ReadSoftWeights(
   vtkPolyData* input, const std::string& name, const Handles& handles);
 
-/// The targets of the moving handles: by motion where there is one, else by the
-/// arrays.
-HandleTargets MakeTargets(const HandleProblem& problem, const Eigen::Vector3d& origin,
+/// The targets of the `moving` handles, ids in increasing order: by motion where
+/// there is one, else by the arrays.
+HandleTargets MakeTargets(const Surface& surface, const std::vector<int>& moving,
   const MotionsById& motions, const Handles& handles, const HandleArrays& arrays);
 }

@@ -146,7 +146,7 @@ TEST(CholeskyFactor, EachStatusHasAMessageOfItsOwn)
   EXPECT_NO_THROW(cartan::RequireFactor(FactorStatus::Ok, 7));
   std::set<std::string> messages;
   const std::vector<std::pair<FactorStatus, ErrorCode>> codes = {
-    { FactorStatus::NotPositiveDefinite, ErrorCode::SingularSystem },
+    { FactorStatus::NotPositiveDefinite, ErrorCode::NotPositiveDefinite },
     { FactorStatus::TooLarge, ErrorCode::TooLarge },
     { FactorStatus::OutOfMemory, ErrorCode::OutOfMemory },
     { FactorStatus::Failed, ErrorCode::SolverFailed }

@@ -306,7 +306,7 @@ TEST(ConstrainedSolver, WithNothingFixedNeedsAStiffness)
   {
     ConstrainedSolver solver(backend);
     ExpectError(ErrorCode::SingularSystem,
-      { "42 points (ids 0, 1, 2, 3, 4, ...)", "1 connected part", "Hold at least one point" },
+      { "42 points (ids 0, 1, 2, 3, 4, ...)", "1 connected part", "Fix at least one point" },
       [&]() { solver.Factorize(matrix, isFixed); });
     Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(matrix.rows());
     ExpectError(ErrorCode::SingularSystem, { "42 points" },
@@ -375,11 +375,11 @@ TEST(ConstrainedSolver, RefusesAMatrixThatIsNotPositiveAndWorksAfterwards)
   for (const SolverBackend backend : Backends())
   {
     ConstrainedSolver solver(backend);
-    ExpectError(ErrorCode::SingularSystem, { "33 unknowns", "cannot be factorized", "Repair" },
+    ExpectError(ErrorCode::NotPositiveDefinite, { "33 unknowns", "cannot be factorized", "Repair" },
       [&]() { solver.Factorize(bad, isFixed); });
     SparseMatrix notFinite = good;
     notFinite.coeffRef(1, 1) = std::numeric_limits<double>::quiet_NaN();
-    ExpectError(ErrorCode::SingularSystem, {},
+    ExpectError(ErrorCode::NotPositiveDefinite, {},
       [&]()
       {
         solver.Factorize(notFinite, isFixed);
@@ -402,7 +402,7 @@ TEST(ConstrainedSolver, NeverReturnsNumbersThatAreNotFinite)
     Eigen::MatrixXd b = Eigen::MatrixXd::Zero(33, 2);
     b(3, 1) = std::numeric_limits<double>::infinity();
     ExpectError(
-      ErrorCode::SingularSystem, { "no finite solution" }, [&]() { solver.SolveFree(b); });
+      ErrorCode::NotPositiveDefinite, { "no finite solution" }, [&]() { solver.SolveFree(b); });
   }
 }
 

@@ -563,7 +563,7 @@ TEST(MarkHandle, RefusesArraysThatAreNoHandles)
   reals->SetValue(9, std::numeric_limits<double>::quiet_NaN());
   reals->SetValue(10, 1e12);
   marker.Input->GetPointData()->AddArray(reals);
-  marker.ExpectError("4 values (ids 3, 8, 9, 10) that are no whole numbers >= 0");
+  marker.ExpectError("4 values (ids 3, 8, 9, 10) that are not whole numbers >= 0");
   vtkNew<vtkStringArray> words;
   words->SetName("Handle");
   words->SetNumberOfTuples(121);

@@ -25,11 +25,10 @@ void RequireFactor(FactorStatus status, Eigen::Index unknowns)
     case FactorStatus::Ok:
       return;
     case FactorStatus::NotPositiveDefinite:
-      throw Error(ErrorCode::SingularSystem,
+      throw Error(ErrorCode::NotPositiveDefinite,
         system +
           "cannot be factorized: up to rounding it is not positive definite. Thin triangles and "
-          "triangles without area cause that with cotangent weights. Repair them, or use uniform "
-          "weights.");
+          "triangles without area can cause that. Repair them (Prepare Surface).");
     case FactorStatus::TooLarge:
       throw Error(ErrorCode::TooLarge,
         system +
@@ -43,8 +42,8 @@ void RequireFactor(FactorStatus status, Eigen::Index unknowns)
     case FactorStatus::Failed:
       break;
   }
-  throw Error(ErrorCode::SolverFailed,
-    system + "could not be solved: the solver's library failed. Choose another solver.");
+  throw Error(
+    ErrorCode::SolverFailed, system + "could not be solved: the solver's library failed.");
 }
 
 std::unique_ptr<CholeskyFactor> MakeCholeskyFactor(

@@ -29,7 +29,7 @@ enum class FactorStatus
 };
 
 /// Throws what a status other than Ok means for a system of so many unknowns:
-/// SingularSystem where the matrix is at fault, else TooLarge, OutOfMemory or
+/// NotPositiveDefinite where the matrix is at fault, else TooLarge, OutOfMemory or
 /// SolverFailed.
 void RequireFactor(FactorStatus status, Eigen::Index unknowns);
 

@@ -74,8 +74,8 @@ void RequireConstraints(const SparseMatrix& matrix, const std::vector<char>& isF
     throw Error(ErrorCode::SingularSystem,
       "The system is singular: " + unconstrained.Describe("point", "points") + " in " +
         std::to_string(parts) +
-        (parts == 1 ? " connected part have no constraint. Hold"
-                    : " connected parts have no constraint. In each part, hold") +
+        (parts == 1 ? " connected part have no constraint. Fix"
+                    : " connected parts have no constraint. In each part, fix") +
         " at least one point.");
   }
 }
@@ -131,7 +131,7 @@ void ConstrainedSolver::NumberFree(const std::vector<char>& isFixed)
   }
 }
 
-/// The lower triangle of A_ff + diag s_f; keeps A_fc. Both come out column by
+/// The lower triangle of A_ff + diag s_f; keeps A_fc. Both are column by
 /// column with sorted rows, ready to use.
 SparseMatrix ConstrainedSolver::SplitBlocks(
   const SparseMatrix& matrix, const Eigen::VectorXd& stiffness)
@@ -216,7 +216,7 @@ Eigen::Map<const Eigen::MatrixXd> ConstrainedSolver::SolveFree(
   RequireStep(rightHandSide.rows(), [&]() { return this->Factor->Solve(rightHandSide); });
   if (!this->Factor->GetSolution().allFinite())
   {
-    throw Error(ErrorCode::SingularSystem,
+    throw Error(ErrorCode::NotPositiveDefinite,
       "The system of " + std::to_string(this->Free.size()) +
         " unknowns has no finite solution: it is singular up to rounding.");
   }

@@ -45,7 +45,7 @@ public:
 
   /// x_f for the right-hand side b_f - A_fc x_c given whole: #free x k each. The
   /// result lies in the solver's memory and is valid until the next solve.
-  /// Throws Error(SingularSystem) when it is not finite.
+  /// Throws Error(NotPositiveDefinite) when it is not finite.
   Eigen::Map<const Eigen::MatrixXd> SolveFree(
     const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const;
 

@@ -10,13 +10,14 @@ namespace cartan
 {
 enum class ErrorCode
 {
-  BadInput,       ///< the input breaks a documented precondition
-  SingularSystem, ///< the constraints do not determine a solution
-  NotConverged,   ///< an iteration stopped short of its tolerance
-  TooLarge,       ///< more entries than indices can count
-  OutOfMemory,    ///< the memory does not suffice
-  SolverFailed,   ///< a library failed without saying why
-  Aborted         ///< the caller asked to stop
+  BadInput,            ///< the input breaks a documented precondition
+  SingularSystem,      ///< the constraints do not determine a solution
+  NotPositiveDefinite, ///< a matrix, up to rounding
+  NotConverged,        ///< an iteration stopped short of its tolerance
+  TooLarge,            ///< more entries than indices can count
+  OutOfMemory,         ///< the memory does not suffice
+  SolverFailed,        ///< a library failed without saying why
+  Aborted              ///< the caller asked to stop
 };
 
 /// The one exception of the kernel. what() is a sentence for the user: what is

@@ -80,15 +80,20 @@ PoissonDeformer::PoissonDeformer(HandleProblem problem, Propagation propagation,
   context.Report(1.0);
 }
 
-void PoissonDeformer::ComputeTransforms(
-  const HandleTargets& targets, const ExecutionContext& context)
+void PoissonDeformer::RequireMotions(const HandleTargets& targets)
 {
   if (targets.IsPerVertex() || targets.RotationVectors.rows())
   {
     throw Error(ErrorCode::BadInput,
-      "Poisson editing spreads one motion per handle, not arrays of rotations or transforms: give "
-      "each handle a motion, or choose another method.");
+      "Poisson editing interpolates one motion per handle, not arrays of positions, rotations or "
+      "transforms: give each handle a motion, or choose another method.");
   }
+}
+
+void PoissonDeformer::ComputeTransforms(
+  const HandleTargets& targets, const ExecutionContext& context)
+{
+  RequireMotions(targets);
   for (const HandleVertex& held : this->HandleVertices)
   {
     MatrixAt(this->Transforms, held.Vertex) = targets.Motions[held.Handle].Linear;

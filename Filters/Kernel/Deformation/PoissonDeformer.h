@@ -36,6 +36,9 @@ public:
       TotalBytes(this->Geodesic, this->Triangles);
   }
 
+  /// Throws Error(BadInput) for targets that are not one motion per handle.
+  static void RequireMotions(const HandleTargets& targets);
+
 protected:
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
 

@@ -281,7 +281,7 @@ bool ShapePreservingDeformer::Step(const Field& eta, const Anchors& anchors, Fie
   }
   catch (const Error& error)
   {
-    if (error.GetCode() != ErrorCode::SingularSystem)
+    if (error.GetCode() != ErrorCode::NotPositiveDefinite)
     {
       throw;
     }
