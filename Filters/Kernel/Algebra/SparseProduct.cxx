@@ -3,6 +3,7 @@
 
 #include "Base/Error.h"
 
+#include <atomic>
 #include <limits>
 #include <vector>
 
@@ -11,6 +12,8 @@ namespace cartan
 namespace
 {
 constexpr std::int64_t MostEntries = std::numeric_limits<SparseMatrix::StorageIndex>::max();
+
+std::atomic<std::int64_t> entryLimit{ MostEntries };
 
 /// The products of two entries that left * right sums up: no fewer than its
 /// entries.
@@ -26,13 +29,28 @@ std::int64_t CountTerms(const SparseMatrix& left, const SparseMatrix& right)
 }
 }
 
+std::int64_t GetEntryLimit()
+{
+  return entryLimit;
+}
+
+LowerEntryLimit::LowerEntryLimit(std::int64_t limit)
+{
+  entryLimit = limit;
+}
+
+LowerEntryLimit::~LowerEntryLimit()
+{
+  entryLimit = MostEntries;
+}
+
 void RequireIndexable(std::int64_t entries, const std::string& what)
 {
-  if (entries > MostEntries)
+  if (entries > GetEntryLimit())
   {
     throw Error(ErrorCode::TooLarge,
       what + " has " + std::to_string(entries) + " entries, more than the " +
-        std::to_string(MostEntries) +
+        std::to_string(GetEntryLimit()) +
         " that its indices can count. Leave fewer points free, or decimate the surface.");
   }
 }
@@ -59,7 +77,7 @@ SparseMatrix CheckedProduct(
   const SparseMatrix& left, const SparseMatrix& right, const std::string& what)
 {
   // The exact count takes as long as half of the product.
-  if (CountTerms(left, right) > MostEntries)
+  if (CountTerms(left, right) > GetEntryLimit())
   {
     RequireIndexable(CountProductEntries(left, right), what);
   }

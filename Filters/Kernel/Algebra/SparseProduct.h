@@ -8,8 +8,21 @@
 
 namespace cartan
 {
-/// Throws Error(TooLarge) for a matrix with more entries than SparseMatrix can
-/// index, 2^31 - 1: before it is built. `what` begins the message: "The system
+/// The most entries that a matrix may have: what SparseMatrix can index, 2^31 - 1.
+std::int64_t GetEntryLimit();
+
+/// Lowers it while this lives: tests need not fill the memory of a machine.
+class LowerEntryLimit
+{
+public:
+  explicit LowerEntryLimit(std::int64_t limit);
+  ~LowerEntryLimit();
+  LowerEntryLimit(const LowerEntryLimit&) = delete;
+  LowerEntryLimit& operator=(const LowerEntryLimit&) = delete;
+};
+
+/// Throws Error(TooLarge) for a matrix of more entries than GetEntryLimit, before
+/// it is built. `what` begins the message: "The system
 /// of the frames".
 void RequireIndexable(std::int64_t entries, const std::string& what);
 

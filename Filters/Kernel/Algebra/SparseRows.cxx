@@ -29,6 +29,18 @@ void AddProductRow(const SparseRows<Value>& leftColumns, const SparseRows<Value>
     }
   }
 }
+
+/// How many products of two entries AddProductRow sums up for all rows.
+template <typename Value>
+std::int64_t CountTerms(const SparseRows<Value>& left, const SparseRows<Value>& right)
+{
+  std::int64_t terms = 0;
+  for (int row = 0; row < left.Count(); ++row)
+  {
+    terms += (left.End(row) - left.Begin(row)) * (right.End(row) - right.Begin(row));
+  }
+  return terms;
+}
 }
 
 SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& residuals,
@@ -37,19 +49,38 @@ SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& 
 {
   const SparseRows<double> residualColumns = residuals.Transposed(size);
   const SparseRows<Eigen::Vector3d> gradientColumns = gradients.Transposed(size);
+  const auto isRead = [numberOfFree](int row, int column)
+  { return row < numberOfFree || column < numberOfFree; };
+  const auto addRow = [&](int row, RowSum<double>& sum)
+  {
+    sum.Clear();
+    AddProductRow(residualColumns, residuals, row, sum);
+    AddProductRow(gradientColumns, differences, row, sum);
+  };
+  // The exact count takes as long as the product.
+  if (CountTerms(residuals, residuals) + CountTerms(gradients, differences) > GetEntryLimit())
+  {
+    std::int64_t entries = 0;
+    RowSum<double> sum(size);
+    for (int row = 0; row < size; ++row)
+    {
+      addRow(row, sum);
+      entries += std::count_if(sum.Columns().begin(), sum.Columns().end(),
+        [&](int column) { return isRead(row, column); });
+    }
+    RequireIndexable(entries, "The normal system");
+  }
   const SparseRows<double> rows = MakeRows<double>(size, context,
     [&](int begin, int end, SparseRows<double>& part)
     {
       RowSum<double> sum(size);
       for (int row = begin; row < end; ++row)
       {
-        sum.Clear();
-        AddProductRow(residualColumns, residuals, row, sum);
-        AddProductRow(gradientColumns, differences, row, sum);
+        addRow(row, sum);
         std::sort(sum.Columns().begin(), sum.Columns().end());
         for (const int column : sum.Columns())
         {
-          if (row < numberOfFree || column < numberOfFree)
+          if (isRead(row, column))
           {
             part.Add(column, sum.At(column));
           }
@@ -57,7 +88,6 @@ SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& 
         part.FinishRow();
       }
     });
-  RequireIndexable(static_cast<std::int64_t>(rows.Entries.size()), "The normal system");
   SparseMatrix matrix(size, size);
   matrix.resizeNonZeros(static_cast<Eigen::Index>(rows.Entries.size()));
   std::copy(rows.Offsets.begin(), rows.Offsets.end(), matrix.outerIndexPtr());

@@ -101,7 +101,14 @@ SparseMatrix LaplacianDeformer::ImplicitEquations()
 {
   const Points rest = this->System.Gather(*this->Problem.Rest);
   const SparseMatrix& laplacian = this->System.GetLaplacian();
+  std::int64_t numberOfEntries = 0; // 3 x 3 for each vertex of each ring
+  for (const std::vector<int>& ring : this->Rings)
+  {
+    numberOfEntries += 9 * static_cast<std::int64_t>(ring.size());
+  }
+  RequireIndexable(numberOfEntries, "The system of implicit rotations");
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(numberOfEntries);
   for (int row = 0; row < this->NumberOfRows(); ++row)
   {
     const std::vector<int>& ring = this->Rings[row];
@@ -140,7 +147,6 @@ SparseMatrix LaplacianDeformer::ImplicitEquations()
     this->Fits.push_back(std::move(fit));
   }
   SparseMatrix equations(3 * this->NumberOfRows(), 3 * this->System.NumberOfLocals());
-  RequireIndexable(static_cast<std::int64_t>(entries.size()), "The system of implicit rotations");
   equations.setFromTriplets(entries.begin(), entries.end());
   return equations;
 }

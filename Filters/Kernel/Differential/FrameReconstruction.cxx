@@ -158,9 +158,8 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
 
 Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices start, const AnchoredSystem& laplacian, int* steps,
-  const ExecutionContext& context, const Eigen::VectorXd& weights)
+  const ExecutionContext& context, const Eigen::VectorXd& weights, int maximumSteps)
 {
-  constexpr int maximumSteps = 1000;
   const std::vector<char> isGiven = FixUnused(mesh, isFixed);
   const SparseMatrix matrix = FrameMatrix(mesh, transitions, weights);
   const auto apply = [&](const Columns& columns)

@@ -33,10 +33,11 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
 /// needed. `laplacian` is factorized with the vertices of `isFixed` and the
 /// unused ones fixed; the frames there are kept. Stops when the preconditioned
 /// residual is 1e-10 of that of the start. `steps`, if given, receives the
-/// number of steps; throws Error(NotConverged) after 1000.
+/// number of steps; throws Error(NotConverged) after `maximumSteps`.
 Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices start, const AnchoredSystem& laplacian,
-  int* steps = nullptr, const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {});
+  int* steps = nullptr, const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {},
+  int maximumSteps = 1000);
 
 /// b of the normal equations L x = b that SolvePositions solves, with the graph
 /// Laplacian L: #V x 3.
