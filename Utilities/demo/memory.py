@@ -8,9 +8,10 @@ import os
 
 from vtkmodules.vtkCommonDataModel import vtkBox
 from vtkmodules.vtkFiltersModeling import vtkLinearSubdivisionFilter
-from vtkcartan import (vtkAsRigidAsPossibleDeformation, vtkCurvatureError, vtkHandleMotion,
-                       vtkLaplacianDeformation, vtkMarkHandle, vtkMultiresolutionDeformation,
-                       vtkPoissonDeformation, vtkRotationInvariantDeformation,
+from vtkcartan import (vtkAsRigidAsPossibleDeformation, vtkCurvatureError, vtkDiscreteForms,
+                       vtkFrameReconstruction, vtkHandleMotion, vtkLaplacianDeformation,
+                       vtkMarkHandle, vtkMultiresolutionDeformation, vtkPoissonDeformation,
+                       vtkPrepareSurface, vtkRestoreSurface, vtkRotationInvariantDeformation,
                        vtkShapePreservingDeformation, vtkSimilarityDeformation, vtkSurfaceMorph,
                        vtkVolumeChange)
 
@@ -49,6 +50,19 @@ def main():
 
     print(f"bytes per point, {points} points")
     row("vtkMarkHandle", marked)
+    forms = vtkDiscreteForms()
+    forms.SetInputConnection(marked.GetOutputPort())
+    rebuilt = vtkFrameReconstruction()
+    rebuilt.SetInputConnection(marked.GetOutputPort())
+    rebuilt.SetFormsConnection(forms.GetOutputPort(1))
+    prepared = vtkPrepareSurface()
+    prepared.SetInputConnection(marked.GetOutputPort())
+    restored = vtkRestoreSurface()
+    restored.SetInputConnection(prepared.GetOutputPort())
+    restored.SetOriginalConnection(marked.GetOutputPort())
+    for filter in (forms, rebuilt, prepared, restored):
+        filter.Update()
+        row(filter.GetClassName(), filter)
     bent = None
     for kind in (vtkRotationInvariantDeformation, vtkShapePreservingDeformation,
                  vtkPoissonDeformation, vtkAsRigidAsPossibleDeformation,
