@@ -3,6 +3,7 @@
 
 #include "Bridge/FilterRun.h"
 #include "Bridge/PreparedSurface.h"
+#include "Kernel/Base/Constants.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Mesh/Polygons.h"
 
@@ -38,7 +39,7 @@ void vtkPrepareSurface::Execute(cartan::FilterRun& run)
     options.Holes.MaximumLength = this->MaximumHoleLength;
   }
   options.FlipsEdges = this->FlipEdges;
-  options.Flips.MaximumAngle = this->FlipAngle * EIGEN_PI / 180.0;
+  options.Flips.MaximumAngle = this->FlipAngle * cartan::Pi / 180.0;
 
   cartan::RepairedSurface repaired =
     cartan::RepairSurface(soup.Positions, soup.Faces, options, run.Context().Part(0.1, 0.9));

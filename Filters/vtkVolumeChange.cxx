@@ -10,6 +10,7 @@
 #include "Kernel/Measure/EdgeLengths.h"
 #include "Kernel/Measure/LocalVolumes.h"
 #include "Kernel/Measure/ShapeDistance.h"
+#include "Kernel/Mesh/Geometry.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -83,11 +84,10 @@ private:
   vtkNew<vtkStringArray> Note;
 };
 
-/// Below this part of what its area could enclose, a volume is rounding.
+/// 0 where a volume is rounding.
 double WithoutRounding(const cartan::ComponentVolume& component)
 {
-  const double limit = 1e-14 * component.Area * std::sqrt(component.Area);
-  return std::abs(component.Volume) > limit ? component.Volume : 0.0;
+  return cartan::EnclosesVolume(component.Volume, component.Area) ? component.Volume : 0.0;
 }
 
 /// A sum that knows what of it is rounding.
@@ -304,7 +304,7 @@ int vtkVolumeChange::FillOutputPortInformation(int port, vtkInformation* info)
 
 void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun& run)
 {
-  const Changes changes(pair, run.Context());
+  const Changes changes(pair, run.Context().Part(0.1, 0.3));
   vtkPolyData* output = run.Output();
   if (this->ComputeLocalVolume)
   {
@@ -312,7 +312,7 @@ void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun
       [&]
       {
         return std::make_unique<cartan::LocalVolumes>(
-          pair.Mesh, *pair.Reference, run.Context().Part(0.1, 0.8));
+          pair.Mesh, *pair.Reference, run.Context().Part(0.3, 0.8));
       });
     const Eigen::VectorXd localVolume =
       volumes->Measure(*pair.Current, run.Context().Part(0.8, 1.0));

@@ -12,6 +12,7 @@
 #include "BenchmarkTools.h"
 #include "PeerDeformation.h"
 
+#include "Kernel/Base/Constants.h"
 #include "Kernel/Deformation/RotationInvariantDeformer.h"
 #include "vtkHandleMotion.h"
 #include "vtkRotationInvariantDeformation.h"
@@ -46,7 +47,7 @@ using cartan::SolverBackend;
 
 namespace
 {
-constexpr double Degrees = 3.14159265358979323846 / 180.0;
+constexpr double Degrees = cartan::Pi / 180.0;
 
 /// The armadillo, subdivided `times` times.
 Mesh Armadillo(int times)

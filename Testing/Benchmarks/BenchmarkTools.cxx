@@ -4,6 +4,7 @@
 #include "OffReader.h"
 
 #include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Base/Constants.h"
 
 #include <algorithm>
 #include <chrono>
@@ -95,7 +96,7 @@ cartan::HandleProblem MakeProblem(const Mesh& mesh, double low, double high)
 cartan::HandleTargets Turn(double degrees)
 {
   cartan::HandleMotion motion;
-  motion.RotationVector = Eigen::Vector3d(degrees * EIGEN_PI / 180.0, 0.0, 0.0);
+  motion.RotationVector = Eigen::Vector3d(degrees * cartan::Pi / 180.0, 0.0, 0.0);
   motion.Linear = cartan::RotationFromVector(motion.RotationVector);
   cartan::HandleTargets targets;
   targets.Motions = { motion };

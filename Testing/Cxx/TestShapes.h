@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Kernel/Base/Constants.h"
 #include "Kernel/Base/Types.h"
 
 #include <Eigen/Geometry>
@@ -18,7 +19,7 @@
 /// comes from a fixed seed and a generator whose sequence the standard fixes.
 namespace shapes
 {
-constexpr double Pi = 3.14159265358979323846;
+using cartan::Pi;
 
 struct Shape
 {

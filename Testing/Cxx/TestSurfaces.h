@@ -121,7 +121,7 @@ inline Surface Tube(
   return FromTriangles(positions, triangles);
 }
 
-constexpr double TwoPi = 6.283185307179586;
+using cartan::FullTurn;
 
 /// Radii 2 and 0.7.
 inline Surface Torus(int around, int aroundTube)
@@ -129,9 +129,9 @@ inline Surface Torus(int around, int aroundTube)
   return Tube(around, aroundTube, true,
     [](double u, double v)
     {
-      const double distance = 2.0 + 0.7 * std::cos(TwoPi * v);
-      return Point{ distance * std::cos(TwoPi * u), distance * std::sin(TwoPi * u),
-        0.7 * std::sin(TwoPi * v) };
+      const double distance = 2.0 + 0.7 * std::cos(FullTurn * v);
+      return Point{ distance * std::cos(FullTurn * u), distance * std::sin(FullTurn * u),
+        0.7 * std::sin(FullTurn * v) };
     });
 }
 
@@ -140,7 +140,7 @@ inline Surface OpenCylinder(int around, int along)
 {
   return Tube(around, along, false,
     [](double u, double v) {
-      return Point{ std::cos(TwoPi * u), std::sin(TwoPi * u), 2.0 * v };
+      return Point{ std::cos(FullTurn * u), std::sin(FullTurn * u), 2.0 * v };
     });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/Curvature.h"
 
+#include "Base/Constants.h"
 #include "Differential/SurfaceFit.h"
 #include "Mesh/Geometry.h"
 
@@ -38,7 +39,6 @@ constexpr double FlatTurn = 1e-4;
 /// triangles cancel out.
 Eigen::Vector3d AngleWeightedNormal(const TriangleMesh& mesh, const Points& points, int v)
 {
-  constexpr double Pi = 3.14159265358979323846;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
   {

@@ -12,9 +12,6 @@ namespace cartan
 {
 namespace
 {
-/// A volume below this part of area^(3/2) is rounding.
-constexpr double SmallestVolume = 1e-12;
-
 Eigen::Vector3d Corner(const TriangleMesh& mesh, const Points& points, int t, int corner)
 {
   return points.row(mesh.GetTriangles()(t, corner)).transpose();
@@ -135,8 +132,7 @@ std::vector<int> EnclosingAlong(const Eigen::Vector3d& direction, const Triangle
 
 bool ComponentVolume::EnclosesVolume() const
 {
-  return this->IsClosed &&
-    std::abs(this->Volume) > SmallestVolume * this->Area * std::sqrt(this->Area);
+  return this->IsClosed && cartan::EnclosesVolume(this->Volume, this->Area);
 }
 
 std::vector<ComponentVolume> MeasureComponents(const TriangleMesh& mesh, const Points& points)

@@ -17,8 +17,7 @@ struct ComponentVolume
   double Area = 0.0;
   bool IsClosed = true;
 
-  /// Whether the component is closed and its volume is more than rounding, which
-  /// that of a sheet with two sides is: above 1e-12 of area^(3/2).
+  /// Whether the component is closed and its volume is more than rounding.
   bool EnclosesVolume() const;
 };
 

@@ -105,6 +105,11 @@ Eigen::VectorXd MixedVoronoiAreas(
   return areas;
 }
 
+bool EnclosesVolume(double volume, double area)
+{
+  return std::abs(volume) > 1e-12 * area * std::sqrt(area);
+}
+
 double BoundingDiagonal(const Points& points)
 {
   return points.rows() ? (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm() : 0.0;

@@ -26,6 +26,10 @@ Points VertexNormals(
 Eigen::VectorXd MixedVoronoiAreas(
   const TriangleMesh& mesh, const Points& points, const ExecutionContext& context = {});
 
+/// Whether the volume of a closed surface of this area is more than rounding, which
+/// that of a sheet with two sides is: above 1e-12 of area^(3/2). A sphere has .094.
+bool EnclosesVolume(double volume, double area);
+
 /// The length of the bounding box's diagonal; of all points, and of those that
 /// triangles use.
 double BoundingDiagonal(const Points& points);

@@ -30,7 +30,7 @@ struct NonManifoldCut
 /// contradict each other, are cut.
 ///
 /// No triangle names a vertex twice. A surface that is an oriented manifold
-/// comes out as it is. O(#T log valence). Throws Error(Aborted).
+/// is returned as it is. O(#T log valence). Throws Error(Aborted).
 NonManifoldCut CutNonManifold(
   const Triangles& triangles, const Points& points, const ExecutionContext& context = {});
 }

@@ -43,7 +43,7 @@ struct Component
 
   bool EnclosesVolume() const
   {
-    return this->IsClosed && std::abs(this->Volume) > 1e-9 * this->Area * std::sqrt(this->Area);
+    return this->IsClosed && cartan::EnclosesVolume(this->Volume, this->Area);
   }
 };
 

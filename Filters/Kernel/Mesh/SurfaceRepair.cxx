@@ -409,7 +409,7 @@ std::string RepairCounts::Describe() const
   add(this->TurnedTriangles, "triangle", "triangles", "turned over to agree with the neighbors");
   add(this->OneSidedEdges, "edge", "edges", "cut because the two triangles cannot agree");
   add(this->NonManifoldEdges, "edge", "edges", "with more than two triangles cut");
-  add(this->CutPoints, "point", "points", "given copies where the surface was no manifold");
+  add(this->CutPoints, "point", "points", "given copies where the surface was not manifold");
   add(this->ReversedComponents, "closed component", "closed components", "turned over");
   add(this->RemovedComponents, "small component", "small components", "removed");
   add(this->FilledHoles, "hole", "holes", "filled");
