@@ -117,7 +117,7 @@ std::vector<vtkIdType> MatchRows(const cartan::TriangleMesh& mesh, vtkTable* tab
   {
     throw Error(ErrorCode::BadInput,
       "The forms table has " + foreign.Describe("row", "rows") +
-        " whose Vertex and Neighbor are no edge of the connectivity, or one that stands twice: "
+        " whose Vertex and Neighbor are not an edge of the connectivity, or repeat one: "
         "they belong to different surfaces.");
   }
   return rowOfEdge;

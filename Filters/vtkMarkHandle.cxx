@@ -95,7 +95,7 @@ vtkSmartPointer<vtkIntArray> CopyHandles(vtkPolyData* input, const std::string& 
   if (vtkAbstractArray* existing = input->GetPointData()->GetAbstractArray(name.c_str()))
   {
     auto* array = vtkDataArray::SafeDownCast(existing);
-    const std::string advice = "it is no list of handle ids; remove it or choose another "
+    const std::string advice = "it is not a list of handle ids; remove it or choose another "
                                "HandleArrayName.";
     if (!array)
     {

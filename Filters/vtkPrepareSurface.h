@@ -13,10 +13,10 @@
  * 2. drops triangles that use a point twice, and of triangles on the same three
  *    points all but one (DropDoubledTriangles),
  * 3. turns triangles over so that neighbors agree (OrientConsistently),
- * 4. cuts where the surface is no manifold (CutNonManifold): each point gets one
- *    copy per class of triangles that hang together over edges of exactly two
- *    triangles. Where bodies touch along an edge they come apart and stay
- *    closed. A one-sided surface, such as a Moebius strip, is cut along a path,
+ * 4. cuts where the surface is not manifold (CutNonManifold): each point gets one
+ *    copy per group of triangles that are connected across edges of exactly two
+ *    triangles. Bodies that touch along an edge are separated and stay closed.
+ *    A one-sided surface, such as a Moebius strip, is cut along a path,
  * 5. orients closed components outward, walls of cavities inward
  *    (OrientOutwards, AlternateNested),
  * 6. removes small components (MinimumComponentArea; off),
@@ -56,7 +56,7 @@
  * References for the methods: Liepa, Filling Holes in Meshes, Symposium on
  * Geometry Processing 2003; Lawson, Software for C1 Surface Interpolation, 1977
  * (flips); Van Oosterom, Strackee, The Solid Angle of a Plane Triangle, 1983
- * (what is inside of what).
+ * (which component encloses which).
  *
  * @sa vtkRestoreSurface vtkCleanPolyData vtkFillHolesFilter
  */
@@ -97,7 +97,7 @@ public:
    * How far apart points may be that are merged: a part of the bounding box's
    * diagonal, or with ToleranceIsAbsolute a length. At least 0. With 0, the
    * default, only points of equal coordinates are merged. Each point goes to the
-   * nearest of those before it that are kept, so none moves by more than the
+   * nearest of those with a smaller id that are kept, so none moves by more than the
    * tolerance; triangles with an edge shorter than that collapse.
    */
   vtkSetClampMacro(Tolerance, double, 0.0, VTK_DOUBLE_MAX);
@@ -120,9 +120,9 @@ public:
 
   ///@{
   /**
-   * Whether to drop all but one of the triangles on the same three points. Both
-   * of two go where the surface closes without them: the wall between two bodies
-   * in contact. On by default.
+   * Whether to drop all but one of the triangles on the same three points. If two
+   * triangles coincide and the surface is closed without them, both are removed:
+   * the wall between two bodies in contact. On by default.
    */
   vtkSetMacro(DropDoubledTriangles, bool);
   vtkGetMacro(DropDoubledTriangles, bool);
@@ -131,8 +131,8 @@ public:
 
   ///@{
   /**
-   * Whether to turn triangles over so that neighbors agree. Each part that hangs
-   * together keeps the side of most of its area. On by default.
+   * Whether to turn triangles over so that neighbors agree. Each group of triangles
+   * that are connected across edges keeps the side of most of its area. On by default.
    */
   vtkSetMacro(OrientConsistently, bool);
   vtkGetMacro(OrientConsistently, bool);
@@ -141,7 +141,7 @@ public:
 
   ///@{
   /**
-   * Whether to cut where the surface is no manifold. On by default.
+   * Whether to cut where the surface is not manifold. On by default.
    */
   vtkSetMacro(CutNonManifold, bool);
   vtkGetMacro(CutNonManifold, bool);
@@ -173,7 +173,7 @@ public:
 
   ///@{
   /**
-   * Holes of at most so many edges are filled with triangles between the points
+   * Holes with at most this number of edges are filled with triangles between the points
    * of their border. 0 to 500, since the time grows with the cube; 0, the
    * default, fills none. The outer border of an open surface is a hole too.
    */

@@ -15,11 +15,12 @@
  * frames. A requested time gives the surface at that time (if FollowTime is
  * on); without a request, Parameter determines it.
  *
- * Each component is placed where a rigid interpolation of the key frames has it,
- * so that the key frames are met exactly as given, with their arrays; see Placement. In between,
- * floating-point arrays of points and cells are interpolated, normals turn with
- * the surface, and other arrays are those of the nearest key frame. An array that
- * not all key frames around have is left out, with a warning.
+ * Each component is placed by a rigid interpolation of the key frames; see
+ * Placement. At the parameter of a key frame the output is that key frame, with its
+ * arrays. In between, floating-point arrays of points and cells are interpolated,
+ * normals turn with the surface, and other arrays are those of the nearest key
+ * frame. An array that is missing in one of the key frames around is left out, with
+ * a warning.
  *
  * At most four key frames are used at a time, two before and two after the
  * parameter. What is computed from them is kept until their contents change.

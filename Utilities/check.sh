@@ -109,7 +109,7 @@ for stage in "${stages[@]}"; do
   case $stage in
     packages | format | layers | doxygen | tests | tidy | asan | tsan) ;;
     *)
-      echo "$0: $stage is no stage" >&2
+      echo "$0: $stage is not a stage" >&2
       exit 2
       ;;
   esac

@@ -28,7 +28,7 @@ LAYERS = {
     "Distributed": ("Algebra", "Mesh"),
 }
 
-# Public classes that are no filters.
+# Public classes that are not filters.
 PARAMETERS = ("vtkHandleMotion.h",)
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
@@ -41,7 +41,7 @@ def problem(folder, header, is_quoted):
     if parts[:2] == ("Filters", "Kernel"):
         own = parts[2] if len(parts) > 2 else None
         if own not in LAYERS:
-            return "the folder is no layer of the kernel"
+            return "the folder is not a layer of the kernel"
         if header.startswith(("vtk", "vtk/")):
             return "the kernel knows nothing of VTK"
         if is_quoted and layer not in LAYERS:

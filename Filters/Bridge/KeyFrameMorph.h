@@ -23,7 +23,7 @@ struct MorphOptions
 {
   std::function<std::unique_ptr<SurfaceMorph>(const KeyFrames&, const ExecutionContext&)> NewMorph;
   ContentKey Settings;     ///< of all that NewMorph depends on
-  bool NeedsPlacement;     ///< whether components come out in places of their own
+  bool NeedsPlacement;     ///< whether the method leaves the places of components open
   bool IsPinned;           ///< placed by the points with a handle, else by area
   std::string HandleArray; ///< where these are
   bool CloseVolume;

@@ -349,7 +349,7 @@ void RequireOnlyTriangles(vtkPolyData* input, const std::string& role)
   {
     throw Error(ErrorCode::BadInput,
       "The " + role + " has " + others.Describe("cell", "cells") +
-        " that are no triangles: triangulate the surface (Triangulate) before its forms are "
+        " that are not triangles: triangulate the surface (Triangulate) before its forms are "
         "computed.");
   }
 }

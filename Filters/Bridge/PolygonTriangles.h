@@ -26,6 +26,6 @@ bool HasOnlyTriangles(vtkPolyData* input);
 /// points that do not exist.
 CellTriangles CollectTriangles(vtkPolyData* input, const std::string& role);
 
-/// Throws Error(BadInput) for cells that are no triangles.
+/// Throws Error(BadInput) for cells that are not triangles.
 void RequireOnlyTriangles(vtkPolyData* input, const std::string& role);
 }

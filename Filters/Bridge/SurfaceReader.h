@@ -54,7 +54,7 @@ struct Surface
 /// lines left out, triangles that name a point twice dropped. While some filter
 /// keeps a surface of the same contents, that one is returned without looking at
 /// a cell. Throws Error(BadInput) when there is no triangle, a used point is not
-/// finite, or the triangles are no oriented manifold.
+/// finite, or the triangles are not an oriented manifold.
 std::shared_ptr<const Surface> ReadSurface(
   vtkPolyData* input, const std::string& role = "input", const ExecutionContext& context = {});
 
@@ -74,7 +74,7 @@ TriangleSoup ReadTriangles(
 
 /// The triangles alone, with all positions at the origin: for filters that do
 /// not look at coordinates and so cannot triangulate. Throws Error(BadInput) as
-/// ReadSurface does, and for polygons that are no triangles.
+/// ReadSurface does, and for polygons that are not triangles.
 std::shared_ptr<const Surface> ReadConnectivity(
   vtkPolyData* input, const std::string& role = "input");
 }

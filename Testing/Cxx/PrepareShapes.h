@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// Surfaces that are no manifold, not oriented, or not joined, and what can be
+/// Surfaces that are not manifold, not oriented, or not joined, and what can be
 /// said of them once they are repaired.
 namespace shapes
 {

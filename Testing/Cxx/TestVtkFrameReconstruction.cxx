@@ -348,7 +348,7 @@ TEST(FrameReconstructionFilter, RefusesBadConnectivity)
   auto quads = Scrambled(shape);
   quads->GetPolys()->InsertNextCell({ 0, 1, 2, 3 });
   vtktest::ExpectRefused(
-    filter, log, quads, { "1 cell (id 80)", "no triangles", "triangulate" }, good);
+    filter, log, quads, { "1 cell (id 80)", "not triangles", "triangulate" }, good);
   vtktest::ExpectRefused(filter, log, Scrambled(shapes::Icosphere(2)),
     { "240 rows", "960 directed edges", "different surfaces" }, good);
 }
@@ -398,7 +398,7 @@ TEST(FrameReconstructionFilter, RefusesBadTables)
   {
     doubled->SetValueByName(5, name, doubled->GetValueByName(4, name));
   }
-  expectRefused(doubled, { "1 row (id 5)", "no edge of the connectivity" });
+  expectRefused(doubled, { "1 row (id 5)", "not an edge of the connectivity" });
   for (const double value : { -1.0, 42.0, NaN, 1e300, 0.5 })
   {
     const auto foreign = copyOfGood();
@@ -412,7 +412,7 @@ TEST(FrameReconstructionFilter, RefusesBadTables)
     neighbors->SetValue(9, value);
     foreign->AddColumn(neighbors);
     SCOPED_TRACE(value);
-    expectRefused(foreign, { "row", "no edge of the connectivity" });
+    expectRefused(foreign, { "row", "not an edge of the connectivity" });
   }
   for (const auto& [name, value] :
     std::vector<std::pair<const char*, double>>{ { "Length", -1.0 }, { "Length", NaN },

@@ -333,7 +333,7 @@ TEST(VtkFrameReconstruction, RefusesTablesThatDoNotFit)
   reconstruct->SetInputData(bar);
   reconstruct->SetFormsData(table);
   reconstruct->Update();
-  vtktest::ExpectMessage(log->Errors, { "no edge of the connectivity" });
+  vtktest::ExpectMessage(log->Errors, { "not an edge of the connectivity" });
 }
 
 TEST(VtkSurfaceMorph, SaysThatAKeyFrameIsEmpty)

@@ -40,7 +40,7 @@ struct Curvatures
 /// X = (x, y) |p| / |(x, y)|, as on a sphere (h = -|p|^2 / 2 R). The second time
 /// in the tangent plane that the first one found, and with X longer than (x, y)
 /// in the direction A (x, y) only, in which the surface bends on the way to p.
-/// So spheres come out right to eight digits and cylinders to five, whatever
+/// So spheres are right to eight digits and cylinders to five, whatever
 /// their triangles, poles and borders included. The points are the two-ring,
 /// more rings at borders, and a ball as large as the one-ring, which matters for
 /// long thin triangles, without what faces another way. C has a slight

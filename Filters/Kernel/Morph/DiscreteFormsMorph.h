@@ -16,7 +16,7 @@ namespace cartan
 /// turns, because neighboring one-rings turn only a little relative to each other.
 ///
 /// It differs from the paper in three points, without which coarse meshes with
-/// thin triangles come out distorted.
+/// thin triangles are distorted.
 ///
 /// - The forms describe a one-ring relative to its normal by projected lengths,
 ///   angles between projections, and heights. Between two surfaces an edge that is

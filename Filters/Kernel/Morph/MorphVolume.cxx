@@ -38,8 +38,8 @@ MorphVolume::MorphVolume(const KeyFrames& keys, const ExecutionContext& context)
   if (!left.IsEmpty())
   {
     this->Warning = "The volume of " + left.Describe("component", "components") +
-      " is not closed, because in a key frame it is open, encloses nothing, or is turned inside "
-      "out against the first one: close its holes (Fill Holes).";
+      " is not adjusted, because in a key frame it is open, encloses nothing, or is turned inside "
+      "out against the first one: fill its holes (Prepare Surface).";
   }
   this->Laplacian.Factorize(
     cartan::Laplacian(mesh, Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges())),
@@ -60,6 +60,6 @@ std::string MorphVolume::Close(double t, Points& positions) const
   const IdSample notClosed = CloseVolumes(mesh, this->TakesPart, volumes, solve, positions);
   return notClosed.IsEmpty() ? std::string()
                              : "The volume of " + notClosed.Describe("component", "components") +
-      " at the parameter " + std::to_string(t) + " could not be closed on those of the key frames.";
+      " at the parameter " + std::to_string(t) + " could not be set to the interpolated volume.";
 }
 }
