@@ -45,19 +45,6 @@ struct Preparation
 
 namespace
 {
-/// Makes no side shorter than a tenth of the longest, and the box a little larger
-/// than what it holds; `length` is the longest side of a box that is a point.
-void Widen(vtkBoundingBox& bounds, double length)
-{
-  const double longest = bounds.GetMaxLength() > 0.0 ? bounds.GetMaxLength() : length;
-  double margins[3];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    margins[axis] = std::max(0.02 * longest, 0.5 * (0.1 * longest - bounds.GetLength(axis)));
-  }
-  bounds.Inflate(margins[0], margins[1], margins[2]);
-}
-
 void AddTransformArrays(
   const cartan::DeformedSurface& result, bool frameChange, bool rotationVector, vtkPolyData* output)
 {
@@ -281,13 +268,7 @@ double* vtkSurfaceDeformation::GetActiveHandleBounds()
       add(vtkPolyData::SafeDownCast(blocks->GetCurrentDataObject()));
     }
   }
-  vtkBoundingBox bounds(0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
-  if (all.IsValid())
-  {
-    bounds = handle.IsValid() ? handle : all;
-    Widen(bounds, all.GetMaxLength());
-  }
-  bounds.GetBounds(this->ActiveHandleBounds);
+  cartan::WidgetBox(handle, all).GetBounds(this->ActiveHandleBounds);
   return this->ActiveHandleBounds;
 }
 

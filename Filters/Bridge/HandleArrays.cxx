@@ -146,4 +146,21 @@ vtkBoundingBox BoundsOfHandle(vtkPolyData* surface, const std::string& name, int
   }
   return bounds;
 }
+
+vtkBoundingBox WidgetBox(const vtkBoundingBox& handle, const vtkBoundingBox& all)
+{
+  if (!all.IsValid())
+  {
+    return { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  }
+  vtkBoundingBox box = handle.IsValid() ? handle : all;
+  const double longest = box.GetMaxLength() > 0.0 ? box.GetMaxLength() : all.GetMaxLength();
+  double margins[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    margins[axis] = std::max(0.02 * longest, 0.5 * (0.1 * longest - box.GetLength(axis)));
+  }
+  box.Inflate(margins[0], margins[1], margins[2]);
+  return box;
+}
 }

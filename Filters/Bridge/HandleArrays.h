@@ -39,4 +39,9 @@ Handles ReadHandles(vtkPolyData* input, const TriangleMesh& mesh, const std::str
 
 /// The box around the points of handle `id`; invalid if there are none.
 vtkBoundingBox BoundsOfHandle(vtkPolyData* surface, const std::string& name, int id);
+
+/// The box of a widget that moves a handle of these bounds: a little larger, and no
+/// side shorter than a tenth of the longest. Around all points if the handle has
+/// none; the unit cube without points.
+vtkBoundingBox WidgetBox(const vtkBoundingBox& handle, const vtkBoundingBox& all);
 }
