@@ -67,6 +67,7 @@ protected:
   ~vtkDiscreteForms() override = default;
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
+  void UsePreparedInput(cartan::FilterRun&) const override { this->RefusePrepareInput(); }
   void Execute(cartan::FilterRun& run) override;
 };
 

@@ -139,6 +139,7 @@ protected:
   ~vtkFrameReconstruction() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  void UsePreparedInput(cartan::FilterRun&) const override { this->RefusePrepareInput(); }
   void Execute(cartan::FilterRun& run) override;
 
 private:

@@ -3,6 +3,7 @@
 
 #include "Bridge/FilterRun.h"
 #include "Bridge/HandleArrays.h"
+#include "Bridge/InputPreparation.h"
 #include "Bridge/SelectionReader.h"
 #include "Kernel/Mesh/GeodesicDistance.h"
 #include "Kernel/Mesh/GrowByRings.h"
@@ -79,6 +80,39 @@ std::shared_ptr<const cartan::Surface> Grow(vtkPolyData* input, int rings, doubl
     {
       mask[v] |= distances[v] <= distance;
     }
+  }
+  return surface;
+}
+
+// The same over the prepared surface. Points that were merged or cut are marked
+// together.
+template <typename Growing>
+std::shared_ptr<const cartan::Surface> GrowPrepared(
+  vtkPolyData* input, cartan::PointMask& mask, const Growing& grow)
+{
+  const auto preparation = cartan::PrepareInput(input, "input", {});
+  const cartan::RepairedSurface& repaired = preparation->Repaired;
+  const auto become = [&](std::size_t v) { return repaired.PreparedPoints[v]; };
+  cartan::PointMask prepared(repaired.OriginalPoints.size(), 0);
+  for (std::size_t v = 0; v < mask.size(); ++v)
+  {
+    if (mask[v] && become(v) >= 0)
+    {
+      prepared[become(v)] = 1;
+    }
+  }
+  for (std::size_t v = 0; v < prepared.size(); ++v)
+  {
+    prepared[v] |= mask[repaired.OriginalPoints[v]];
+  }
+  const auto surface = grow(cartan::ApplyPreparation(*preparation, input), prepared);
+  for (std::size_t v = 0; v < mask.size(); ++v)
+  {
+    mask[v] |= become(v) >= 0 && prepared[become(v)];
+  }
+  for (std::size_t v = 0; v < prepared.size(); ++v)
+  {
+    mask[repaired.OriginalPoints[v]] |= prepared[v];
   }
   return surface;
 }
@@ -296,8 +330,10 @@ void vtkMarkHandle::MarkBlock(
     cartan::AddSelected(block.Evaluated, block.Input, mask);
   }
   context.Report(0.2);
+  const auto grow = [&](vtkPolyData* input, cartan::PointMask& grown)
+  { return Grow(input, this->GrowRings, this->GrowDistance, grown, context.Part(0.2, 0.9)); };
   if (const auto surface =
-        Grow(block.Input, this->GrowRings, this->GrowDistance, mask, context.Part(0.2, 0.9)))
+        this->GetPrepareInput() ? GrowPrepared(block.Input, mask, grow) : grow(block.Input, mask))
   {
     run.Warn(surface->Describe("input", block.Input));
     run.KeepSurface(surface);

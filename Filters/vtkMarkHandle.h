@@ -188,6 +188,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
+  void UsePreparedInput(cartan::FilterRun&) const override {} // only to grow
   void Execute(cartan::FilterRun& run) override;
   void ForgetResults() override { this->NumberOfMarkedPoints = 0; }
 

@@ -220,6 +220,7 @@ protected:
   vtkPrepareSurface() = default;
   ~vtkPrepareSurface() override = default;
 
+  void UsePreparedInput(cartan::FilterRun&) const override { this->RefusePrepareInput(); }
   void Execute(cartan::FilterRun& run) override;
   void ForgetResults() override { this->Report.clear(); }
 

@@ -59,6 +59,7 @@ protected:
   ~vtkRestoreSurface() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  void UsePreparedInput(cartan::FilterRun&) const override { this->RefusePrepareInput(); }
   void Execute(cartan::FilterRun& run) override;
 };
 

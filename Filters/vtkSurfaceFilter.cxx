@@ -24,6 +24,7 @@ vtkSurfaceFilter::~vtkSurfaceFilter() = default;
 void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "PrepareInput: " << this->PrepareInput << "\n";
   os << indent << "KeptMemoryLimit: " << this->KeptMemoryLimit << "\n";
   os << indent << "KeptMemory: " << this->GetKeptMemory() << "\n";
 }
@@ -65,6 +66,18 @@ void vtkSurfaceFilter::EmptyOutputs()
   }
 }
 
+void vtkSurfaceFilter::UsePreparedInput(cartan::FilterRun& run) const
+{
+  run.PrepareInputs();
+}
+
+void vtkSurfaceFilter::RefusePrepareInput() const
+{
+  throw cartan::Error(cartan::ErrorCode::BadInput,
+    "PrepareInput is not possible in " + std::string(this->GetClassName()) +
+      ": turn it off, and connect the output of vtkPrepareSurface (Prepare Surface).");
+}
+
 int vtkSurfaceFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -85,7 +98,12 @@ int vtkSurfaceFilter::RequestData(
         this->EmptyOutputs();
         return;
       }
+      if (this->PrepareInput)
+      {
+        this->UsePreparedInput(run);
+      }
       this->Execute(run);
+      run.RestoreOutput();
       for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
       {
         cartan::ShareKeys(input, run.Output(port));

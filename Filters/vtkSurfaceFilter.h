@@ -48,6 +48,20 @@ public:
 
   ///@{
   /**
+   * Whether to prepare surfaces that are refused otherwise, as vtkPrepareSurface
+   * does by default, and to carry the results back to the points and cells of the
+   * input, as vtkRestoreSurface does. Surfaces that belong together are prepared
+   * alike: as the reference needs it, or else the first. Off by default, and an error
+   * in vtkDiscreteForms, vtkFrameReconstruction, vtkPrepareSurface and
+   * vtkRestoreSurface.
+   */
+  vtkSetMacro(PrepareInput, bool);
+  vtkGetMacro(PrepareInput, bool);
+  vtkBooleanMacro(PrepareInput, bool);
+  ///@}
+
+  ///@{
+  /**
    * How much memory this filter may keep from one update to the next, in
    * megabytes (10^6 bytes), >= 0. What was used longest ago is given up first;
    * what the last update used is always kept. A lower limit never
@@ -95,6 +109,18 @@ protected:
    */
   virtual bool AcceptsEmptyInput() const { return true; }
 
+  /**
+   * Called before Execute() when PrepareInput is on. Makes the run give prepared
+   * surfaces. A filter for which that means nothing, because an output belongs to
+   * edges or is a prepared surface itself, calls RefusePrepareInput().
+   */
+  virtual void UsePreparedInput(cartan::FilterRun& run) const;
+
+  /**
+   * Throws the error that says so, and what to do.
+   */
+  [[noreturn]] void RefusePrepareInput() const;
+
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -123,6 +149,7 @@ private:
 
   std::unique_ptr<cartan::KeptResults> Kept;
   int KeptMemoryLimit = 2000;
+  bool PrepareInput = false;
 };
 
 #endif

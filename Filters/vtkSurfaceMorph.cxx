@@ -264,7 +264,7 @@ int vtkSurfaceMorph::RequestData(
 void vtkSurfaceMorph::RequireKeyFrames(cartan::FilterRun& run) const
 {
   const Internals& state = *this->State;
-  if (IsBlockOf(state.Composite, run.Input()))
+  if (IsBlockOf(state.Composite, vtkPolyData::SafeDownCast(run.InputObject())))
   {
     throw Error(ErrorCode::BadInput,
       "The input is a composite data set: give its surfaces one by one (Extract Block), or as "

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Bridge/FilterRun.h"
 
+#include "Bridge/InputPreparation.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkCommunicator.h"
@@ -32,6 +34,14 @@ struct KeptSurface
   std::shared_ptr<const Surface> TheSurface;
 
   std::size_t GetBytes() const { return this->TheSurface->GetBytes(); }
+};
+
+/// A prepared input of one state.
+struct PreparedInput
+{
+  vtkSmartPointer<vtkPolyData> TheSurface;
+
+  std::size_t GetBytes() const { return 1024 * this->TheSurface->GetActualMemorySize(); }
 };
 
 ExecutionContext MakeContext(vtkAlgorithm* algorithm)
@@ -76,9 +86,71 @@ vtkDataObject* FilterRun::InputObject(int port) const
   return vtkDataObject::GetData(this->Inputs[port]);
 }
 
-vtkPolyData* FilterRun::Input(int port, int connection) const
+vtkPolyData* FilterRun::ConnectedInput(int port, int connection) const
 {
   return vtkPolyData::GetData(this->Inputs[port], connection);
+}
+
+vtkPolyData* FilterRun::Input(int port, int connection) const
+{
+  const auto prepared = this->PreparedInputs.find({ port, connection });
+  return prepared != this->PreparedInputs.end() ? prepared->second.Get()
+                                                : this->ConnectedInput(port, connection);
+}
+
+void FilterRun::PrepareInputs()
+{
+  std::vector<std::pair<int, int>> places;
+  for (int port = 0; port < this->Filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int connection = 0; connection < this->NumberOfConnections(port); ++connection)
+    {
+      if (this->ConnectedInput(port, connection))
+      {
+        places.emplace_back(port, connection);
+      }
+    }
+  }
+  if (places.empty())
+  {
+    return;
+  }
+  vtkPolyData* model = this->ConnectedInput(places.back().first, 0);
+  const auto prepare = [this](vtkPolyData* surface)
+  {
+    return this->Keep<InputPreparation>(KeyOfSurface(surface),
+      [&] { return cartan::PrepareInput(surface, "input", this->TheContext.Part(0.0, 0.1)); });
+  };
+  const auto preparation = prepare(model);
+  for (const auto& place : places)
+  {
+    vtkPolyData* surface = this->ConnectedInput(place.first, place.second);
+    const bool isAlike = surface->GetNumberOfPoints() == model->GetNumberOfPoints() &&
+      KeyOfCells(surface) == KeyOfCells(model);
+    ContentKey key = KeyOfSurface(model);
+    key.Add(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(surface)));
+    key.Add(static_cast<std::uint64_t>(surface->GetMTime()));
+    this->PreparedInputs[place] =
+      this
+        ->Keep<PreparedInput>(key,
+          [&]
+          {
+            return std::make_unique<PreparedInput>(PreparedInput{
+              ApplyPreparation(isAlike ? *preparation : *prepare(surface), surface) });
+          })
+        ->TheSurface;
+  }
+  this->PreparedOutput = vtkSmartPointer<vtkPolyData>::New();
+}
+
+void FilterRun::RestoreOutput()
+{
+  const vtkSmartPointer<vtkPolyData> result = std::exchange(this->PreparedOutput, nullptr);
+  if (!result || result->GetNumberOfPoints() == 0)
+  {
+    return;
+  }
+  this->Warn(RestoreResult(result, this->Input(), this->ConnectedInput(0, 0), this->Output()));
 }
 
 vtkTable* FilterRun::InputTable(int port) const
@@ -98,6 +170,10 @@ vtkDataObject* FilterRun::OutputObject(int port) const
 
 vtkPolyData* FilterRun::Output(int port) const
 {
+  if (port == 0 && this->PreparedOutput)
+  {
+    return this->PreparedOutput;
+  }
   return vtkPolyData::GetData(this->Outputs, port);
 }
 

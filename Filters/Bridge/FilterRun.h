@@ -4,6 +4,11 @@
 #include "Bridge/KeptResults.h"
 #include "Bridge/SurfaceReader.h"
 
+#include "vtkSmartPointer.h"
+
+#include <map>
+#include <utility>
+
 class vtkAlgorithm;
 class vtkDataObject;
 class vtkInformation;
@@ -22,6 +27,12 @@ public:
 
   vtkInformation* Request() const { return this->TheRequest; }
   vtkInformation* OutputInformation() const;
+
+  /// From here on Input() gives prepared surfaces, all as the reference on port 1
+  /// or else the first one needs it, and Output() one that RestoreOutput() carries
+  /// back to the points and cells of the input.
+  void PrepareInputs();
+  void RestoreOutput();
 
   /// The data on an input port, null where nothing is connected.
   vtkDataObject* InputObject(int port = 0) const;
@@ -57,12 +68,17 @@ public:
   }
 
 private:
+  vtkPolyData* ConnectedInput(int port, int connection) const;
+
   vtkAlgorithm* Filter;
   vtkInformation* TheRequest;
   vtkInformationVector** Inputs;
   vtkInformationVector* Outputs;
   KeptResults& Kept;
   ExecutionContext TheContext;
+  /// By port and connection; empty when surfaces are used as they come.
+  std::map<std::pair<int, int>, vtkSmartPointer<vtkPolyData>> PreparedInputs;
+  vtkSmartPointer<vtkPolyData> PreparedOutput;
 };
 
 /// How a run ended.
