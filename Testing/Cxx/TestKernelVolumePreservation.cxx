@@ -343,7 +343,7 @@ TEST(LocalDepth, OfATorusIsTheMeanOfTheChordsOfTheExactTorus)
   }
 }
 
-TEST(LocalDepth, TakesSevenRaysPerVertex)
+TEST(LocalDepth, TakesOneRayPerVertexAndPerNeighbor)
 {
   const shapes::Shape sphere = shapes::Icosphere(2);
   const TriangleMesh mesh = shapes::MakeMesh(sphere);
@@ -355,7 +355,7 @@ TEST(LocalDepth, TakesSevenRaysPerVertex)
       ++rays;
       return cast(from, direction);
     });
-  EXPECT_EQ(rays, 7 * sphere.NumberOfVertices());
+  EXPECT_EQ(rays, mesh.NumberOfVertices() + mesh.NumberOfDirectedEdges());
 }
 
 TEST(LocalDepth, GrowsWithTheSurface)

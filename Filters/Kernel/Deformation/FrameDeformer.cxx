@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/FrameDeformer.h"
 
-#include "Deformation/SliverRemoval.h"
 #include "Differential/Curvature.h"
 #include "Measure/ComponentVolumes.h"
 #include "Measure/VolumeClosing.h"

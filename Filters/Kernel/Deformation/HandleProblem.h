@@ -2,24 +2,15 @@
 #pragma once
 
 #include "Base/Bytes.h"
+#include "Deformation/Riders.h"
 #include "Differential/Laplacian.h"
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <vector>
 
 namespace cartan
 {
-/// A vertex that is in no triangle of a deformer's mesh, but goes with one.
-struct Rider
-{
-  int Vertex;
-  std::array<int, 3> Corners; ///< vertices of the mesh, or riders after this one
-  Eigen::Vector3d Weights;    ///< barycentric coordinates of its foot
-  double Height;              ///< over the triangle, in parts of the root of twice its area
-};
-
 /// What stays the same while handles are dragged. A *handle* k >= 1 is the set
 /// of vertices that a user holds as one.
 struct HandleProblem

@@ -38,14 +38,13 @@ double RelativeHeight(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const 
   return (b - a).cross(c - a).norm() / LongestEdgeSquared(a, b, c);
 }
 
-/// The area vector, cut to the root of its length: a unit of length that goes with
-/// the triangle when it is turned or scaled.
-Eigen::Vector3d UnitOfHeight(
-  const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
+double CosineOfNormals(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+  const Eigen::Vector3d& moved, const Eigen::Vector3d& apex)
 {
-  const Eigen::Vector3d areaVector = (b - a).cross(c - a);
-  const double size = areaVector.norm();
-  return size > 0.0 ? Eigen::Vector3d(areaVector / std::sqrt(size)) : areaVector;
+  const Eigen::Vector3d before = (b - apex).cross(a - apex);
+  const Eigen::Vector3d after = (b - moved).cross(a - moved);
+  const double product = before.norm() * after.norm();
+  return product > 0.0 ? before.dot(after) / product : 1.0;
 }
 
 /// Takes slivers out of a mesh, pass by pass. A pass leaves alone what touches a
@@ -93,7 +92,11 @@ public:
         }
       }
     }
-    return this->HasChanged && this->Rebuild();
+    if (this->HasChanged)
+    {
+      this->Rebuild();
+    }
+    return this->HasChanged;
   }
 
   const std::shared_ptr<const TriangleMesh>& GetMesh() const { return this->Mesh; }
@@ -230,7 +233,7 @@ private:
     {
       return false;
     }
-    this->AddRider(v, corners);
+    this->Riders.push_back(MakeRider(this->Rest, v, corners));
     this->Changed.row(this->Mesh->LeftTriangle(begin)) << corners[0], corners[1], corners[2];
     this->Remove(this->Mesh->LeftTriangle(begin + 1));
     this->Remove(this->Mesh->LeftTriangle(begin + 2));
@@ -319,9 +322,8 @@ private:
         {
           continue;
         }
-        const Eigen::Vector3d before = UnitOfHeight(this->At(center), this->At(x), this->At(y));
-        const Eigen::Vector3d after = UnitOfHeight(this->At(stays), this->At(x), this->At(y));
-        if (before.dot(after) < LeastCosine * before.norm() * after.norm())
+        if (CosineOfNormals(this->At(x), this->At(y), this->At(stays), this->At(center)) <
+          LeastCosine)
         {
           return false;
         }
@@ -337,7 +339,7 @@ private:
     {
       return false;
     }
-    this->AddRider(goes, best);
+    this->Riders.push_back(MakeRider(this->Rest, goes, best));
     this->LockRing(goes);
     this->LockRing(stays);
     this->Rename(goes, stays);
@@ -380,21 +382,7 @@ private:
       SmallestCarrier;
   }
 
-  void AddRider(int v, const std::array<int, 3>& corners)
-  {
-    const Eigen::Vector3d a = this->At(corners[0]);
-    const Eigen::Vector3d b = this->At(corners[1]);
-    const Eigen::Vector3d c = this->At(corners[2]);
-    const Eigen::Vector3d areaVector = (b - a).cross(c - a);
-    const double squared = areaVector.squaredNorm();
-    const Eigen::Vector3d from = this->At(v) - a;
-    const double atB = areaVector.dot(from.cross(c - a)) / squared;
-    const double atC = areaVector.dot((b - a).cross(from)) / squared;
-    const double height = areaVector.dot(from) / std::pow(squared, 0.75);
-    this->Riders.push_back({ v, corners, { 1.0 - atB - atC, atB, atC }, height });
-  }
-
-  bool Rebuild()
+  void Rebuild()
   {
     Triangles left(this->Changed.rows(), 3);
     Eigen::Index count = 0;
@@ -408,7 +396,6 @@ private:
     left.conservativeResize(count, 3);
     this->Mesh =
       std::make_shared<const TriangleMesh>(this->Mesh->NumberOfVertices(), std::move(left));
-    return true;
   }
 
   std::shared_ptr<const TriangleMesh> Mesh;
@@ -436,37 +423,5 @@ HandleProblem WithoutSlivers(HandleProblem problem, const ExecutionContext& cont
     problem.Riders = removal.TakeRiders();
   }
   return problem;
-}
-
-void CarryRiders(const std::vector<Rider>& riders, const Points& rest, DeformedSurface& result)
-{
-  for (auto rider = riders.rbegin(); rider != riders.rend(); ++rider)
-  {
-    const auto& [a, b, c] = rider->Corners;
-    const auto unitOfHeight = [&, a = a, b = b, c = c](const Points& points) -> Eigen::Vector3d
-    { return UnitOfHeight(points.row(a), points.row(b), points.row(c)); };
-    Points& positions = result.Positions;
-    // As a displacement, so that what does not move stays to the last bit.
-    Eigen::Vector3d place = rest.row(rider->Vertex);
-    place += rider->Height * (unitOfHeight(positions) - unitOfHeight(rest));
-    for (int i = 0; i < 3; ++i)
-    {
-      const int corner = rider->Corners[i];
-      place += rider->Weights[i] * (positions.row(corner) - rest.row(corner)).transpose();
-    }
-    positions.row(rider->Vertex) = place.transpose();
-    const auto mean = [&](auto& values)
-    {
-      if (values.rows() > 0)
-      {
-        values.row(rider->Vertex) = (rider->Weights[0] * values.row(rider->Corners[0]) +
-          rider->Weights[1] * values.row(rider->Corners[1]) +
-          rider->Weights[2] * values.row(rider->Corners[2]))
-                                      .eval();
-      }
-    };
-    mean(result.Transforms);
-    mean(result.FrameScale);
-  }
 }
 }

@@ -26,10 +26,4 @@ namespace cartan
 /// The problem as it is, and the same objects, when there is no sliver. O(#V + #T),
 /// and again as often as slivers hang on slivers. Throws Error(Aborted).
 HandleProblem WithoutSlivers(HandleProblem problem, const ExecutionContext& context = {});
-
-/// Puts the riders where the triangles that carry them went: from `rest`, in the
-/// barycentric coordinates and at the height, in parts of the root of the area,
-/// that they have there; exactly where they are when the triangle did not move.
-/// Writes Positions, and Transforms and FrameScale where those are filled.
-void CarryRiders(const std::vector<Rider>& riders, const Points& rest, DeformedSurface& result);
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/SurfaceDeformer.h"
 
-#include "Deformation/SliverRemoval.h"
-
 namespace cartan
 {
 void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
