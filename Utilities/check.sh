@@ -35,7 +35,11 @@ format()
   cxx_files | xargs -0 clang-format-14 --dry-run -Werror
 }
 
-layers() { Utilities/check_layers.py; }
+layers()
+{
+  Utilities/check_layers.py
+  Utilities/check_sizes.py
+}
 
 doxygen()
 {

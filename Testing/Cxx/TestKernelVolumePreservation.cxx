@@ -369,7 +369,6 @@ TEST(LocalDepth, GrowsWithTheSurface)
     const VolumeModel model = ModelOf(scaled);
     EXPECT_LT((model.LocalDepth / size - expected.LocalDepth).norm(), 1e-9);
     EXPECT_LT((model.Offsets / size - expected.Offsets).norm(), 1e-9);
-    EXPECT_LT((model.ColumnHeight / size - expected.ColumnHeight).norm(), 1e-9);
   }
 }
 
@@ -437,7 +436,6 @@ TEST(VolumeModel, DoesNotDependOnTheThreads)
   const VolumeModel model = ModelOf(shape, threads);
   EXPECT_EQ(model.LocalDepth, expected.LocalDepth);
   EXPECT_EQ(model.Offsets, expected.Offsets);
-  EXPECT_EQ(model.ColumnHeight, expected.ColumnHeight);
 }
 
 TEST(VolumeModel, OfAComponentDoesNotDependOnTheOthers)

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/FrameDeformer.h"
 
-#include "Differential/Curvature.h"
 #include "Measure/ComponentVolumes.h"
 #include "Measure/VolumeClosing.h"
-#include "Mesh/Geometry.h"
 
 #include <cmath>
 
@@ -58,8 +56,8 @@ std::size_t FrameDeformer::GetBytes() const
   return this->GetBaseBytes() + this->Frames->GetBytes() +
     (this->Positions == this->Frames ? 0 : this->Positions->GetBytes()) +
     (this->Model ? this->Model->GetBytes() : 0) +
-    TotalBytes(*this->EdgeWeights, this->HandleVertices, this->Transforms, this->TriangleTransforms,
-      this->TriangleWeights);
+    TotalBytes(*this->EdgeWeights, this->RestHeights, this->HandleVertices, this->Transforms,
+      this->TriangleTransforms, this->TriangleWeights);
 }
 
 void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
@@ -222,8 +220,13 @@ void FrameDeformer::ScaleFrames(
   const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context)
 {
   const TriangleMesh& mesh = *this->Problem.Mesh;
-  const Curvatures curvatures = CurvaturesFromNormals(
-    mesh, result.Positions, VertexNormals(mesh, result.Positions, context), context);
+  if (this->RestHeights.size() == 0)
+  {
+    this->RestHeights = ColumnHeights(mesh, *this->Problem.Rest, this->Model->LocalDepth, context);
+  }
+  // The depth of the surface at rest serves the deformed one too.
+  const Eigen::VectorXd heights =
+    ColumnHeights(mesh, result.Positions, this->Model->LocalDepth, context);
   Matrices scaled = this->Transforms;
   for (int i = 0; i < this->Positions->NumberOfLocals(); ++i)
   {
@@ -232,11 +235,7 @@ void FrameDeformer::ScaleFrames(
     {
       continue;
     }
-    // The depth of the surface at rest serves the deformed one too.
-    const double k1 = curvatures.Maximum[v];
-    const double k2 = curvatures.Minimum[v];
-    const double height = ColumnHeight(ColumnDepth(this->Model->LocalDepth[v], k1, k2), k1, k2);
-    const double ratio = this->Model->ColumnHeight[v] / height;
+    const double ratio = this->RestHeights[v] / heights[v];
     if (std::isfinite(ratio) && ratio > 0.0)
     {
       result.FrameScale[v] = std::sqrt(ratio);

@@ -40,7 +40,11 @@ public:
 
   /// Needed for any volume correction and for closing; empty where there is
   /// none. Has no effect on components that enclose no volume.
-  void SetVolumeModel(std::shared_ptr<const VolumeModel> model) { this->Model = std::move(model); }
+  void SetVolumeModel(std::shared_ptr<const VolumeModel> model)
+  {
+    this->RestHeights.resize(model == this->Model ? this->RestHeights.size() : 0);
+    this->Model = std::move(model);
+  }
   const std::shared_ptr<const VolumeModel>& GetVolumeModel() const { return this->Model; }
 
   int GetNumberOfFactorizations() const override;
@@ -112,6 +116,7 @@ private:
   VolumeCorrection Correction = VolumeCorrection::None;
   bool Close = false;
   std::shared_ptr<const VolumeModel> Model;
-  Points TriangleWeights; ///< CornerWeights, empty until first needed
+  Eigen::VectorXd RestHeights; ///< ColumnHeights at rest, empty until first needed
+  Points TriangleWeights;      ///< CornerWeights, empty until first needed
 };
 }

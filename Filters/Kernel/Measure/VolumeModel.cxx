@@ -304,16 +304,23 @@ VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
   FillDepths(mesh, laplacian, model);
   model.Offsets = OffsetsFromMiddle(mesh, points, normals, laplacian, model);
 
-  const Curvatures curvatures = CurvaturesFromNormals(mesh, points, normals, context);
-  model.ColumnHeight.resize(mesh.NumberOfVertices());
+  context.Report(1.0);
+  return model;
+}
+
+Eigen::VectorXd ColumnHeights(const TriangleMesh& mesh, const Points& points,
+  const Eigen::VectorXd& localDepth, const ExecutionContext& context)
+{
+  const Curvatures curvatures =
+    CurvaturesFromNormals(mesh, points, VertexNormals(mesh, points, context), context);
+  Eigen::VectorXd heights(mesh.NumberOfVertices());
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     const double k1 = curvatures.Maximum[v];
     const double k2 = curvatures.Minimum[v];
-    model.ColumnHeight[v] = ColumnHeight(ColumnDepth(model.LocalDepth[v], k1, k2), k1, k2);
+    heights[v] = ColumnHeight(ColumnDepth(localDepth[v], k1, k2), k1, k2);
   }
-  context.Report(1.0);
-  return model;
+  return heights;
 }
 
 double ColumnDepth(double localDepth, double k1, double k2)

@@ -29,8 +29,6 @@ struct VolumeModel
   /// From the middle of the body to the vertex; zero in components that enclose
   /// nothing: #V x 3.
   Points Offsets;
-  /// h of Eq. 13 at rest: #V.
-  Eigen::VectorXd ColumnHeight;
   /// Per component: whether it takes part, and its volume, negative for the wall
   /// of a cavity. Those take part that enclose volume, but for outermost ones that
   /// are oriented inside out and what is inside of those.
@@ -43,8 +41,8 @@ struct VolumeModel
 
   std::size_t GetBytes() const
   {
-    return TotalBytes(this->LocalDepth, this->IsMeasured, this->Offsets, this->ColumnHeight,
-      this->EnclosesVolume, this->Volumes);
+    return TotalBytes(
+      this->LocalDepth, this->IsMeasured, this->Offsets, this->EnclosesVolume, this->Volumes);
   }
 };
 
@@ -55,6 +53,10 @@ struct VolumeModel
 /// IsEmpty() if no component encloses volume.
 VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
   const RayCaster& castRay, const ExecutionContext& context = {});
+
+/// h of Eq. 13 at each vertex, with the curvatures from CurvaturesFromNormals: #V.
+Eigen::VectorXd ColumnHeights(const TriangleMesh& mesh, const Points& points,
+  const Eigen::VectorXd& localDepth, const ExecutionContext& context = {});
 
 /// How deep the column of body under a vertex is taken: min(depth / 2, r1 / 2,
 /// r2 / 2) with the positive radii of curvature r = 1 / k (section 4.2 with
