@@ -269,7 +269,7 @@ SparseMatrix ShapePreservingDeformer::Linearize(const Field& eta, Field& rightHa
 
 /// Solves Eq. 8 at `eta` for the next iterate, which has the anchors' values.
 /// False where it cannot: far from a solution, negative cotangents may make the
-/// system indefinite.
+/// system indefinite, and weights may vanish.
 bool ShapePreservingDeformer::Step(const Field& eta, const Anchors& anchors, Field& next)
 {
   Field rightHandSide;
@@ -281,7 +281,8 @@ bool ShapePreservingDeformer::Step(const Field& eta, const Anchors& anchors, Fie
   }
   catch (const Error& error)
   {
-    if (error.GetCode() != ErrorCode::NotPositiveDefinite)
+    if (error.GetCode() != ErrorCode::NotPositiveDefinite &&
+      error.GetCode() != ErrorCode::SingularSystem)
     {
       throw;
     }
