@@ -45,7 +45,7 @@ Anchors Anchors::Repeated(int count) const
 }
 
 void AnchoredSystem::Factorize(
-  const SparseMatrix& matrix, Anchors anchors, const ExecutionContext& context)
+  const SparseMatrix& matrix, const Anchors& anchors, const ExecutionContext& context)
 {
   // Solves need not add zeros.
   this->Stiffness = anchors.Stiffness.isZero(0.0) ? Eigen::VectorXd() : anchors.Stiffness;
@@ -54,11 +54,11 @@ void AnchoredSystem::Factorize(
 }
 
 void AnchoredSystem::FactorizeFit(const SparseMatrix& laplacian, const Eigen::VectorXd& inverseMass,
-  Anchors anchors, AnchorMode mode, const ExecutionContext& context)
+  const Anchors& anchors, AnchorMode mode, const ExecutionContext& context)
 {
   if (mode == AnchorMode::Substituted)
   {
-    this->Factorize(laplacian, std::move(anchors), context);
+    this->Factorize(laplacian, anchors, context);
     const Eigen::VectorXd mass = inverseMass.cwiseInverse();
     this->RightHandSide = SparseMatrix(laplacian.rows(), laplacian.cols());
     this->RightHandSide.setIdentity();
@@ -66,8 +66,7 @@ void AnchoredSystem::FactorizeFit(const SparseMatrix& laplacian, const Eigen::Ve
     return;
   }
   const SparseMatrix weighted = inverseMass.asDiagonal() * laplacian;
-  this->Factorize(
-    CheckedProduct(laplacian, weighted, "The system of the fit"), std::move(anchors), context);
+  this->Factorize(CheckedProduct(laplacian, weighted, "The system of the fit"), anchors, context);
   this->RightHandSide = laplacian;
 }
 

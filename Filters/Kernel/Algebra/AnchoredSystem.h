@@ -44,7 +44,8 @@ public:
 
   /// `matrix` has both triangles stored. Throws what ConstrainedSolver throws:
   /// Error(SingularSystem) naming vertices where a connected part has no anchor.
-  void Factorize(const SparseMatrix& matrix, Anchors anchors, const ExecutionContext& context = {});
+  void Factorize(
+    const SparseMatrix& matrix, const Anchors& anchors, const ExecutionContext& context = {});
 
   /// The same for a fit of differential coordinates: equations L x = M d of a
   /// symmetric L, in the weight of M^-1 (`inverseMass`, #U),
@@ -54,7 +55,7 @@ public:
   /// that is A = L M^-1 L and b = L d; with AnchorMode::Substituted the
   /// equations of free unknowns alone, A = L and b = M d. Stiffness needs Soft.
   void FactorizeFit(const SparseMatrix& laplacian, const Eigen::VectorXd& inverseMass,
-    Anchors anchors, AnchorMode mode, const ExecutionContext& context = {});
+    const Anchors& anchors, AnchorMode mode, const ExecutionContext& context = {});
 
   /// `rightHandSide` is b (#U x k), the d of FactorizeFit; `values` (#U x k) has the
   /// t of hard and soft anchors and gets x.

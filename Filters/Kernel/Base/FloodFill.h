@@ -28,9 +28,10 @@ std::vector<int> FloodFill(
   {
     reach(seed);
   }
-  for (std::size_t next = 0; next < visited.size(); ++next)
+  std::size_t next = 0;
+  while (next < visited.size())
   {
-    const int i = visited[next];
+    const int i = visited[next++]; // a copy, for reach() makes the list grow
     neighbors(i, reach);
   }
   return visited;

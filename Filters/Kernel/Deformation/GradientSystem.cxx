@@ -329,7 +329,7 @@ void GradientSystem::Factorize(const TriangleMesh& mesh, const ExecutionContext&
       this->SoftPositions[v] / (this->EdgeLengths[v] * this->EdgeLengths[v]);
   }
   anchors.Stiffness = this->Stiffness;
-  this->System.Factorize(matrix, std::move(anchors), context.Part(0.3, 1.0));
+  this->System.Factorize(matrix, anchors, context.Part(0.3, 1.0));
   this->Values.setZero(size, 3);
 }
 

@@ -144,7 +144,7 @@ void MultiresolutionDeformer::PrepareSpreading(const ExecutionContext& context)
   anchors.Vertices.assign(vertices.begin(), vertices.begin() + numberOfLocals);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges());
   const SparseMatrix graph = Laplacian(mesh, ones, anchors.Vertices);
-  this->Spreading.Factorize(graph, std::move(anchors), context);
+  this->Spreading.Factorize(graph, anchors, context);
 }
 
 /// The base's local frame turns as its one-ring and normal do.

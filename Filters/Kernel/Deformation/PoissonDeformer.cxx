@@ -61,7 +61,6 @@ Field GeodesicWeights(
 PoissonDeformer::PoissonDeformer(HandleProblem problem, Propagation propagation,
   SolverBackend backend, const ExecutionContext& context)
   : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.6))
-  , Kind(propagation)
 {
   const TriangleMesh& mesh = *this->Problem.Mesh;
   if (propagation == Propagation::Harmonic)

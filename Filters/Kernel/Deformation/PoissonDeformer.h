@@ -43,7 +43,6 @@ protected:
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
 
 private:
-  Propagation Kind;
   std::optional<HarmonicBlend> Harmonic;
   Field Geodesic; ///< #locals x #Moving, their weights; empty with harmonic ones
   /// Those around unknown positions.

@@ -43,7 +43,6 @@ void SimilarityDeformer::EdgeForm::DeformBy(Matrices& transforms, const HandleTa
 SimilarityDeformer::SimilarityDeformer(HandleProblem problem, const Options& options,
   SolverBackend backend, const ExecutionContext& context)
   : SurfaceDeformer(std::move(problem))
-  , ConstrainsTransforms(options.ConstrainTransforms)
   , Backend(backend)
   , System(this->Problem, options.CoherenceRings, options.ConstrainTransforms, backend, context)
   , PositionSystem(backend)
@@ -72,7 +71,7 @@ void SimilarityDeformer::FactorizePositions(const ExecutionContext& context)
   {
     anchors.Vertices.push_back(gradients.Vertex(column));
   }
-  this->PositionSystem.Factorize(matrix, std::move(anchors), context);
+  this->PositionSystem.Factorize(matrix, anchors, context);
   this->PositionColumns = laplacians.Transposed(size);
   this->ArePositionsFactorized = true;
 }

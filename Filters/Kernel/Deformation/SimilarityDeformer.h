@@ -140,7 +140,6 @@ private:
   void SolveLeastSquares(Points& positions, const ExecutionContext& context);
   void WarnOfSingularTransforms(const HandleTargets& targets);
 
-  bool ConstrainsTransforms;
   SolverBackend Backend;
   GradientSystem System;
 
