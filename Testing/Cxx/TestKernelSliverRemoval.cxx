@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AllDeformers.h"
+#include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/SliverRemoval.h"
 #include "Kernel/Measure/ComponentVolumes.h"
+#include "Kernel/Mesh/Geometry.h"
+#include "RealMeshes.h"
 #include "TestShapes.h"
 
 #include <gtest/gtest.h>
@@ -317,6 +320,26 @@ TEST(SliverRemoval, LeavesGoodMeshesAndFlatBodiesAlone)
   HandleProblem problem = ProblemOf(flat);
   problem.Handle = { 1, 1, 2, 0 };
   EXPECT_EQ(cartan::WithoutSlivers(problem).Mesh, problem.Mesh);
+}
+
+/// Parts as CAD tessellates them: long fans of needles and caps.
+TEST(SliverRemoval, MechanicalPartsKeepTheirSize)
+{
+  for (const std::string name : { "mpi", "mpi_triang", "joint", "anchor" })
+  {
+    Shape part = shapes::RealMesh(name);
+    part.Positions.rowwise() -= part.Positions.colwise().mean().eval();
+    int axis = 0;
+    (part.Positions.colwise().maxCoeff() - part.Positions.colwise().minCoeff()).maxCoeff(&axis);
+    const HandleProblem problem =
+      cartan::WithoutSlivers(shapes::ProblemOf(part, shapes::EndsAlong(part, axis, 0.1)));
+    for (const auto& [method, make] : deformers::All())
+    {
+      EXPECT_LT(cartan::BoundingDiagonal(Deform(make, problem)),
+        1.5 * cartan::BoundingDiagonal(part.Positions))
+        << name << ", " << method;
+    }
+  }
 }
 
 TEST(SliverRemoval, ComponentsKeepTheirNumbers)
