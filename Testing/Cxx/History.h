@@ -75,6 +75,8 @@ Subject Make(const std::string& name, std::vector<Choice> choices)
 {
   choices.push_back(Of<Filter>(3,
     [](Filter* filter, int value) { filter->SetKeptMemoryLimit(value == 1 ? 0 : 2000 >> value); }));
+  choices.push_back(
+    Of<Filter>(2, [](Filter* filter, int value) { filter->SetPrepareInput(value == 1); }));
   return { name, [] { return vtkSmartPointer<Filter>::New(); }, std::move(choices) };
 }
 
