@@ -36,9 +36,6 @@ struct KeptSurface
   std::size_t GetBytes() const { return this->TheSurface->GetBytes(); }
 };
 
-/// Of a run, for the preparation of its inputs.
-constexpr double PreparationShare = 0.1;
-
 /// A prepared input of one state.
 struct PreparedInput
 {
@@ -119,15 +116,11 @@ void FilterRun::PrepareInputs()
     return;
   }
   vtkPolyData* model = this->ConnectedInput(places.back().first, 0);
-  // The model first, then those that it does not serve; the filter has the rest.
-  const double share = PreparationShare / (static_cast<double>(places.size()) + 1.0);
-  double done = 0.0;
-  const auto prepare = [this, share, &done](vtkPolyData* surface)
+  // Progress waits at its begin, where a filter that asks for time steps comes again.
+  const auto prepare = [this](vtkPolyData* surface)
   {
-    const ExecutionContext context = this->TheContext.Part(done, done + share);
-    done += share;
-    return this->Keep<InputPreparation>(
-      KeyOfSurface(surface), [&] { return cartan::PrepareInput(surface, "input", context); });
+    return this->Keep<InputPreparation>(KeyOfSurface(surface),
+      [&] { return cartan::PrepareInput(surface, "input", this->TheContext.Part(0.0, 0.0)); });
   };
   const auto preparation = prepare(model);
   for (const auto& place : places)
@@ -149,7 +142,6 @@ void FilterRun::PrepareInputs()
         ->TheSurface;
   }
   this->PreparedOutput = vtkSmartPointer<vtkPolyData>::New();
-  this->TheContext = this->TheContext.Part(PreparationShare, 1.0);
 }
 
 void FilterRun::RestoreOutput()

@@ -590,6 +590,19 @@ TEST(ConformalIteration, RefusesToCallWhatDivergesConverged)
   }
 }
 
+TEST(ConformalIteration, HasNothingToDoWithoutFreeVertices)
+{
+  HandleProblem problem = EndsWithAPinnedPoint();
+  for (int& handle : problem.Handle)
+  {
+    handle = handle == 0 ? 1 : handle;
+  }
+  ShapePreservingDeformer deformer(problem);
+  deformer.SetIteration(10, 1e-3);
+  const HandleTargets targets = Turns({ Eigen::Vector3d(0.1, 0, 0), Eigen::Vector3d(0, 0.4, 0) });
+  EXPECT_TRUE(Deform(deformer, targets).Positions.allFinite());
+}
+
 TEST(ConformalIteration, RefusesWholeTurnsAboutDifferentAxesAndSaysWhatToDo)
 {
   const HandleProblem problem = EndsWithAPinnedPoint();

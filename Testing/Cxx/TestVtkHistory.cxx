@@ -170,7 +170,7 @@ TEST_P(History, DoesNotMatter)
   Observed used(GetParam());
   walk.Apply(used.Filter, walk.GetInputs());
   int successes = 0;
-  for (int step = 0; step < 200 && !HasFailure(); ++step)
+  for (int step = 0; step < 300 && !HasFailure(); ++step)
   {
     walk.Step(used.Filter);
     used.Update();

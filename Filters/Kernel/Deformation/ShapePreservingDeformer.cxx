@@ -151,7 +151,7 @@ void ShapePreservingDeformer::BlendRotations(
     },
     context);
   this->Iterations = 1;
-  if (this->MaximumIterations > 1)
+  if (this->MaximumIterations > 1 && eta.rows() > 0)
   {
     eta = this->Iterate(std::move(eta), targets, context);
   }
