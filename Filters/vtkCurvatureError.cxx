@@ -48,31 +48,54 @@ void AddCurvatures(vtkPolyData* output, const cartan::Curvatures& curvatures, bo
   }
   vtkNew<vtkUnsignedCharArray> isDetermined;
   isDetermined->SetName("CurvatureIsDetermined");
-  isDetermined->SetNumberOfValues(static_cast<vtkIdType>(curvatures.IsDetermined.size()));
-  std::copy(
-    curvatures.IsDetermined.begin(), curvatures.IsDetermined.end(), isDetermined->GetPointer(0));
+  isDetermined->SetNumberOfValues(static_cast<vtkIdType>(curvatures.States.size()));
+  std::transform(curvatures.States.begin(), curvatures.States.end(), isDetermined->GetPointer(0),
+    [](cartan::CurvatureState state)
+    { return state == cartan::CurvatureState::Determined ? 1 : 0; });
   output->GetPointData()->AddArray(isDetermined);
+}
+
+/// Where the curvatures are of this state.
+cartan::IdSample PointsOf(
+  const std::vector<cartan::CurvatureState>& states, cartan::CurvatureState state)
+{
+  cartan::IdSample points;
+  for (std::size_t v = 0; v < states.size(); ++v)
+  {
+    if (states[v] == state)
+    {
+      points.Add(static_cast<long long>(v));
+    }
+  }
+  return points;
 }
 
 /// Empty where every point's curvature is determined. `which` is the input or
 /// the reference.
-std::string DescribeUndetermined(const std::vector<char>& isDetermined, const std::string& which)
+std::string DescribeUndetermined(
+  const std::vector<cartan::CurvatureState>& states, const std::string& which)
 {
-  cartan::IdSample undetermined;
-  for (std::size_t v = 0; v < isDetermined.size(); ++v)
+  std::string text;
+  const cartan::IdSample open = PointsOf(states, cartan::CurvatureState::Open);
+  if (!open.IsEmpty())
   {
-    if (!isDetermined[v])
-    {
-      undetermined.Add(static_cast<long long>(v));
-    }
-  }
-  return undetermined.IsEmpty() ? std::string()
-                                : "The curvature of the " + which + " is not determined at " +
-      undetermined.Describe("point", "points") +
+    text = "The curvature of the " + which + " is not determined at " +
+      open.Describe("point", "points") +
       ": the points around lie in fewer than three rows in some direction. There it is "
       "estimated from the normals of the triangles, with edges that join two rows taken as "
       "straight. For reliable values use at least three evenly spaced rows of points in every "
       "direction.";
+  }
+  const cartan::IdSample coarse = PointsOf(states, cartan::CurvatureState::Coarse);
+  if (!coarse.IsEmpty())
+  {
+    text += (text.empty() ? "" : " ") + std::string("The curvature of the ") + which +
+      " may be off by more than 5 % at " + coarse.Describe("point", "points") +
+      ": the triangles there are large for how the surface bends, or the points are noisy or "
+      "at a sharp edge. For reliable values use smaller triangles where the surface bends, and "
+      "smooth noise.";
+  }
+  return text;
 }
 
 /// Adds the array `name`Error with its summary as field data, and returns the
@@ -101,7 +124,7 @@ void vtkCurvatureError::Measure(cartan::FilterRun& run)
   const auto surface = run.ReadSurface();
   const cartan::Curvatures curvatures =
     cartan::FitCurvatures(*surface->Mesh, *surface->Positions, run.Context().Part(0.1, 1.0));
-  run.Warn(DescribeUndetermined(curvatures.IsDetermined, "input"));
+  run.Warn(DescribeUndetermined(curvatures.States, "input"));
   AddCurvatures(run.Output(), curvatures, this->ComputeDirections);
   run.Output()->GetPointData()->SetActiveScalars("MeanCurvature");
 }
@@ -116,7 +139,7 @@ void vtkCurvatureError::Compare(const cartan::SurfacePair& pair, cartan::FilterR
       auto kept = std::make_unique<ReferenceCurvatures>();
       kept->Mean = fitted.Mean;
       kept->Gaussian = fitted.Gaussian;
-      kept->Warning = DescribeUndetermined(fitted.IsDetermined, "reference");
+      kept->Warning = DescribeUndetermined(fitted.States, "reference");
       kept->Areas =
         cartan::MixedVoronoiAreas(*pair.Mesh, *pair.Reference, run.Context().Part(0.45, 0.5));
       return kept;
@@ -124,7 +147,7 @@ void vtkCurvatureError::Compare(const cartan::SurfacePair& pair, cartan::FilterR
   const cartan::Curvatures now =
     cartan::FitCurvatures(*pair.Mesh, *pair.Current, run.Context().Part(0.5, 1.0));
   run.Warn(before->Warning);
-  run.Warn(DescribeUndetermined(now.IsDetermined, "input"));
+  run.Warn(DescribeUndetermined(now.States, "input"));
 
   vtkPolyData* output = run.Output();
   AddCurvatures(output, now, this->ComputeDirections);

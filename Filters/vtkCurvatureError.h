@@ -25,8 +25,10 @@
  * - `CurvatureIsDetermined` (unsigned char): 0 where the points around lie in
  *   fewer than three rows in some direction, as on the side of a
  *   vtkCylinderSource, and leave the curvature open. There it is estimated from
- *   the normals of the triangles, with edges between two rows taken as straight,
- *   and a warning gives the number and the first ids. 1 elsewhere.
+ *   the normals of the triangles, with edges between two rows taken as straight.
+ *   0 also where the curvature may be off by more than 5 % of the larger principal
+ *   one, because the triangles are large for how the surface bends there, or at
+ *   sharp edges. Warnings give the number and the first ids. 1 elsewhere.
  * - `MeanCurvatureError`, `GaussianCurvatureError` (with a reference): the
  *   surface's curvature minus the reference's.
  * The active point scalars, by which viewers color the surface, are

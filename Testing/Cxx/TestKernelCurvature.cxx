@@ -101,7 +101,41 @@ shapes::Shape Turned(
 int CountOpen(const Curvatures& curvatures)
 {
   return static_cast<int>(
-    std::count(curvatures.IsDetermined.begin(), curvatures.IsDetermined.end(), 0));
+    std::count(curvatures.States.begin(), curvatures.States.end(), CurvatureState::Open));
+}
+
+/// The hull of points of which no four lie in a plane, by trying each triangle.
+shapes::Shape ConvexHull(const Points& points)
+{
+  std::vector<Eigen::Vector3i> faces;
+  const int count = static_cast<int>(points.rows());
+  for (int a = 0; a < count; ++a)
+  {
+    for (int b = a + 1; b < count; ++b)
+    {
+      for (int c = b + 1; c < count; ++c)
+      {
+        const Eigen::Vector3d ab = points.row(b) - points.row(a);
+        const Eigen::Vector3d ac = points.row(c) - points.row(a);
+        const Eigen::Vector3d normal = ab.cross(ac);
+        const double height = points.row(a).dot(normal);
+        int above = 0;
+        for (int d = 0; d < count; ++d)
+        {
+          above += d != a && d != b && d != c && points.row(d).dot(normal) > height ? 1 : 0;
+        }
+        if (above == 0)
+        {
+          faces.emplace_back(a, b, c);
+        }
+        else if (above == count - 3)
+        {
+          faces.emplace_back(a, c, b);
+        }
+      }
+    }
+  }
+  return { points, shapes::ToTriangles(faces) };
 }
 
 bool AllFinite(const Curvatures& curvatures)
@@ -265,6 +299,41 @@ TEST(Curvature, OpenOnlyWhereItIs)
          shapes::Plane(6, 1.0, 0.3), shapes::Ellipsoid(2, HalfAxes), shapes::OpenCylinder(12, 2) })
   {
     EXPECT_EQ(CountOpen(Fit(shape)), 0);
+  }
+}
+
+TEST(Curvature, HullsOfPointsAreRightOrCoarse)
+{
+  // A corner of a hull of points inside a ball is one whatever its triangles; the
+  // points of an ellipsoid have its curvatures.
+  shapes::Random random(3);
+  for (const int count : { 20, 60, 150 })
+  {
+    Points inBall(count, 3);
+    Points onEllipsoid(count, 3);
+    for (int i = 0; i < count; ++i)
+    {
+      const Eigen::Vector3d direction = Eigen::Vector3d(random(), random(), random()).normalized();
+      inBall.row(i) = (1.0 + 0.3 * random()) * direction.transpose();
+      onEllipsoid.row(i) = HalfAxes.cwiseProduct(direction).transpose();
+    }
+    const shapes::Shape corners = ConvexHull(inBall);
+    const TriangleMesh mesh(count, corners.Faces);
+    const Curvatures ofCorners = FitCurvatures(mesh, inBall);
+    const shapes::Shape smooth = ConvexHull(onEllipsoid);
+    const Curvatures ofSmooth = Fit(smooth);
+    for (int v = 0; v < count; ++v)
+    {
+      EXPECT_TRUE(!mesh.IsUsed(v) || ofCorners.States[v] != CurvatureState::Determined);
+      if (ofSmooth.States[v] == CurvatureState::Determined)
+      {
+        const Exact exact = OnEllipsoid(onEllipsoid.row(v));
+        const double spread = std::sqrt(exact.Mean * exact.Mean - exact.Gaussian);
+        // Single points of such irregular triangles are more than 5 % off.
+        EXPECT_NEAR(ofSmooth.Maximum[v], exact.Mean + spread, 0.15 * (exact.Mean + spread));
+        EXPECT_NEAR(ofSmooth.Minimum[v], exact.Mean - spread, 0.15 * (exact.Mean + spread));
+      }
+    }
   }
 }
 

@@ -8,6 +8,14 @@
 
 namespace cartan
 {
+/// What a mesh says about the curvatures of a vertex.
+enum class CurvatureState : unsigned char
+{
+  Open,      ///< the neighbors lie in two rows: the values are the best guess
+  Coarse,    ///< the values may be off by more than 5 % of the larger curvature
+  Determined ///< else; also where there is nothing to say
+};
+
 /// Curvatures per vertex, positive where the surface bends away from its
 /// normal: a sphere of radius R that is oriented outward has Mean = Maximum =
 /// Minimum = 1 / R and Gaussian = 1 / R^2.
@@ -24,8 +32,7 @@ struct Curvatures
   Points MaximumDirections; ///< unit tangent vectors of either sign: #V x 3
   Points MinimumDirections; ///< the normal times them: #V x 3
 
-  /// 0 where the mesh leaves the values open and they are the best guess: #V.
-  std::vector<char> IsDetermined;
+  std::vector<CurvatureState> States; ///< #V
 };
 
 /// Curvatures by a least-squares fit around each vertex, O(#V).
@@ -51,7 +58,15 @@ struct Curvatures
 /// either, A is fitted to the normal curvatures 2 h / |p|^2 toward the nearest
 /// points in the plane normal to the mean of the triangles' normals: edges
 /// between two rows count as straight. That is right for cylinders and cones
-/// and a guess elsewhere, and IsDetermined says so.
+/// and a guess elsewhere, and the state says so.
+///
+/// A determined form counts as coarse if its standard error, which measures how
+/// far the points lie from the cubic, is more than 1.5 % of the larger
+/// curvature (1 % at borders), if there are too few points to tell, or if an edge
+/// turns the normal by more than 66 degrees. On tori, tubes along lines and arcs,
+/// catenoids and superquadrics of 3 to 100 points around, other values are right
+/// within 5 %, but for single ones at borders. On hulls of 50 to 500 random points of
+/// an ellipsoid 2 % of them are off by 5 to 15 %.
 ///
 /// Measured against others: rms over all vertices of the error of (H, K), on
 /// shapes of about unit curvature with 3K - 9K vertices (irregular ones are

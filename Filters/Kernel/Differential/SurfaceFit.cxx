@@ -55,6 +55,10 @@ constexpr double SlopeShare = 0.03;
 constexpr double CurvatureShare = 1e-8;
 constexpr double CubicShare = 0.1;
 
+/// How many more points than parameters a fit must have for its residuals to
+/// tell anything.
+constexpr double LeastFreedom = 1.0;
+
 /// Axes in the plane normal to Normal along which the coordinates of the points
 /// are uncorrelated, and the lengths that are units along them.
 struct PlaneAxes
@@ -72,6 +76,13 @@ struct PlaneAxes
   /// The derivatives of the height along the axes become the form on the
   /// surface. False where they are no numbers.
   bool ToSecondForm(const Vector9& fit, SecondForm& form) const;
+
+  /// The standard error of the form, by the covariance s^2 P M P of the
+  /// coefficients P b of a fit to heights, where P = W^T W is the inverse of the
+  /// matrix M + R with its ridge, and s^2 the sum of squared residuals over the number of
+  /// points less that of parameters, trace(P M) = 9 - trace(P R).
+  double StandardError(
+    const Matrix9& w, const Vector9& ridge, double squaredResiduals, int numberOfPoints) const;
 };
 
 bool PlaneAxes::Fit(const Neighborhood& neighborhood, const Eigen::Vector3d& normal)
@@ -124,6 +135,28 @@ bool PlaneAxes::ToSecondForm(const Vector9& fit, SecondForm& form) const
   form.Uv = -(hessianAb - shear * hessianAa) / (size * std::sqrt(e * width));
   form.Vv = -(hessianBb - 2.0 * shear * hessianAb + shear * shear * hessianAa) / (size * width);
   return std::isfinite(form.Uu * form.Vv) && std::isfinite(form.Uv * form.Uv);
+}
+
+double PlaneAxes::StandardError(
+  const Matrix9& w, const Vector9& ridge, double squaredResiduals, int numberOfPoints) const
+{
+  const double left = numberOfPoints - 9.0 + w.colwise().squaredNorm().dot(ridge.transpose());
+  if (left < LeastFreedom)
+  {
+    return std::numeric_limits<double>::infinity();
+  }
+  // P M P = P - P R P. The mixed derivative occurs twice in the tensor.
+  const Eigen::Array3d units(
+    this->UnitA * this->UnitA, this->UnitA * this->UnitB, this->UnitB * this->UnitB);
+  const Eigen::Array3d count(1.0, 2.0, 1.0);
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vector9 column = w.transpose() * w.col(2 + i);
+    const double variance = column[2 + i] - column.cwiseAbs2().dot(ridge);
+    sum += count[i] * variance / (units[i] * units[i]);
+  }
+  return std::sqrt(std::max(squaredResiduals, 0.0) / left * std::max(sum, 0.0));
 }
 
 /// The monomials of the cubic without a constant: slopes in the plane, the
@@ -201,6 +234,21 @@ Eigen::Vector3d SecondForm::ChordCorrection(const Eigen::Vector3d& offset) const
   // (t^2 + h^2)^1/2 - t = h tan(turn / 4).
   const double longer = height * tangent / (1.0 + std::sqrt(1.0 + tangent * tangent));
   return std::copysign(longer / turn, along) * (turnU * this->U + turnV * this->V);
+}
+
+double SecondForm::HalfTurnSine(const Eigen::Vector3d& edge) const
+{
+  const double u = edge.dot(this->U);
+  const double v = edge.dot(this->V);
+  const double planarSquared = u * u + v * v;
+  if (!(planarSquared > 0.0))
+  {
+    return 0.0;
+  }
+  // The chord of a turn by t on a circle of curvature k is 2 sin(t / 2) / k long.
+  const double curvature =
+    (this->Uu * u * u + 2.0 * this->Uv * u * v + this->Vv * v * v) / planarSquared;
+  return 0.5 * std::abs(curvature) * edge.norm();
 }
 
 void Neighborhood::Start(int v)
@@ -323,19 +371,33 @@ bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   }
   Matrix9 matrix = Matrix9::Zero();
   Vector9 rightHandSide = Vector9::Zero();
+  double squaredHeights = 0.0;
   for (int i = 0; i < neighborhood.Size(); ++i)
   {
     const Vector9 monomials = Monomials(neighborhood.Offset(i), axes, earlier);
+    const double height = neighborhood.Offset(i).dot(normal);
     matrix.selfadjointView<Eigen::Lower>().rankUpdate(monomials);
-    rightHandSide += neighborhood.Offset(i).dot(normal) * monomials;
+    rightHandSide += height * monomials;
+    squaredHeights += height * height;
   }
   // The Frobenius norms of the derivative tensors, in which a mixed derivative
   // occurs several times: they do not depend on the choice of axes.
   Vector9 ridge;
   ridge << TinyRidge, TinyRidge, TinyRidge, 2.0 * TinyRidge, TinyRidge, CubicRidge,
     3.0 * CubicRidge, 3.0 * CubicRidge, CubicRidge;
-  matrix.diagonal() += neighborhood.Size() * ridge;
-  return axes.ToSecondForm(matrix.llt().solve(rightHandSide), form);
+  ridge *= neighborhood.Size();
+  matrix.diagonal() += ridge;
+  const Eigen::LLT<Matrix9> factor(matrix);
+  const Vector9 fit = factor.solve(rightHandSide);
+  if (earlier)
+  {
+    // |h - X x|^2 = h.h - x.b - x.R x for (X^T X + R) x = b = X^T h.
+    const double squaredResiduals =
+      squaredHeights - fit.dot(rightHandSide) - fit.cwiseAbs2().dot(ridge);
+    form.StandardError = axes.StandardError(
+      factor.matrixL().solve(Matrix9::Identity()), ridge, squaredResiduals, neighborhood.Size());
+  }
+  return axes.ToSecondForm(fit, form);
 }
 
 bool FitNormalCurvatures(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,

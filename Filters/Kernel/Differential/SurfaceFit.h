@@ -4,6 +4,7 @@
 #include "Mesh/TriangleMesh.h"
 
 #include <array>
+#include <limits>
 
 namespace cartan
 {
@@ -18,12 +19,20 @@ struct SecondForm
   double Uv = 0.0;
   double Vv = 0.0;
 
+  /// Of (Uu, Uv, Vv) as a tensor, in 1 / length, by how far the points lie from
+  /// the fit. Infinite where there are too few points to tell.
+  double StandardError = std::numeric_limits<double>::infinity();
+
   /// What to add to the tangential part of an offset from the vertex so that a
   /// circle of curvature gets the length of its chord: along the direction in
   /// which the normal turns on the way, a length tangential part t and a height
   /// h become (t^2 + h^2)^1/2. In coordinates corrected so, cylinders as well
   /// as spheres are exactly quadratic.
   Eigen::Vector3d ChordCorrection(const Eigen::Vector3d& offset) const;
+
+  /// The sine of half the turn of the normal along an edge from the vertex, if
+  /// the edge is the chord of a circle. More than 1 where there is no such circle.
+  double HalfTurnSine(const Eigen::Vector3d& edge) const;
 };
 
 /// The points a surface is fitted to around one vertex. Reused from vertex to
@@ -76,6 +85,9 @@ public:
   /// 37 degrees.
   bool IsClose(int i) const;
 
+  /// The first points are the neighbors of the vertex: how many.
+  int OneRingSize() const { return this->CountWithOneRing - 1; }
+
 private:
   void Start(int v);
   void AddFan(int v, double minimumCosine, double maximumSquaredDistance);
@@ -104,7 +116,8 @@ constexpr double LeastDetermination = 0.025;
 
 /// The least-squares cubic of FitCurvatures() in the plane normal to `normal`.
 /// The coordinates are corrected to chord lengths by `earlier` where it is
-/// given, and as on a sphere where it is not. False if the points coincide.
+/// given, and as on a sphere where it is not. False if the points coincide. With
+/// `earlier`, the form has a standard error.
 bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   const SecondForm* earlier, SecondForm& form);
 
