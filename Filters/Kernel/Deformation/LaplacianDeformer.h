@@ -39,7 +39,13 @@ public:
   /// The rounds of estimation, >= 1; 5 is past any visible change.
   void SetRounds(int rounds) { this->Rounds = rounds; }
 
-  std::string GetWarning() const override { return this->System.GetWarning(); }
+  /// Also names the vertices that the last round of estimation has moved far, if it
+  /// has moved them at least half as far as the round before.
+  std::string GetWarning() const override
+  {
+    const std::string ofSystem = this->System.GetWarning();
+    return ofSystem + (ofSystem.empty() || this->Unsettled.empty() ? "" : " ") + this->Unsettled;
+  }
 
   int GetNumberOfFactorizations() const override
   {
@@ -68,12 +74,16 @@ private:
   SparseMatrix ImplicitEquations();
   void EstimateRotations(const Points& displacements, const ExecutionContext& context);
   void SolveImplicitly(const Points& displacements);
-  void SolveRotated(Points& displacements) const;
+  void SolveRotated(const Points& targetsOfLocals, Points& displacements) const;
+  /// `moves` (#locals) is how far the last round has moved them, `before` the
+  /// farthest move of the round before.
+  void WarnIfUnsettled(const Eigen::VectorXd& moves, double before);
 
   LaplacianRotations Rotations;
   PolyharmonicSystem System;
   AnchoredSystem ImplicitSystem;
   int Rounds = 5;
+  std::string Unsettled;          ///< of the last motion
   std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
   Points Differential;            ///< #rows x 3, of the rest
   Matrices Transforms;            ///< #rows x 9
