@@ -27,11 +27,11 @@ FrameDeformer::FrameDeformer(
   const bool isShared = this->Problem.ConstrainPositions && sameWeights;
   const auto frameWeights = symmetricWeights(this->Problem.Weights);
   context.Report(0.1);
-  this->Frames = std::make_shared<HandleLaplacian>(this->Problem, frameWeights, Hold::AllHandles,
-    backend, context.Part(0.1, isShared ? 1.0 : 0.5));
+  this->FrameSystem = std::make_shared<HandleLaplacian>(this->Problem, frameWeights,
+    Hold::AllHandles, backend, context.Part(0.1, isShared ? 1.0 : 0.5));
   this->EdgeWeights = sameWeights ? frameWeights : symmetricWeights(this->Problem.PositionWeights);
-  this->Positions = isShared
-    ? this->Frames
+  this->PositionSystem = isShared
+    ? this->FrameSystem
     : std::make_shared<HandleLaplacian>(this->Problem, this->EdgeWeights,
         this->Problem.ConstrainPositions ? Hold::AllHandles : Hold::PinnedOnly, backend,
         context.Part(0.5, 1.0));
@@ -47,14 +47,15 @@ FrameDeformer::FrameDeformer(
 
 int FrameDeformer::GetNumberOfFactorizations() const
 {
-  return this->Frames->GetNumberOfFactorizations() +
-    (this->Positions == this->Frames ? 0 : this->Positions->GetNumberOfFactorizations());
+  return this->FrameSystem->GetNumberOfFactorizations() +
+    (this->PositionSystem == this->FrameSystem ? 0
+                                               : this->PositionSystem->GetNumberOfFactorizations());
 }
 
 std::size_t FrameDeformer::GetBytes() const
 {
-  return this->GetBaseBytes() + this->Frames->GetBytes() +
-    (this->Positions == this->Frames ? 0 : this->Positions->GetBytes()) +
+  return this->GetBaseBytes() + this->FrameSystem->GetBytes() +
+    (this->PositionSystem == this->FrameSystem ? 0 : this->PositionSystem->GetBytes()) +
     (this->Model ? this->Model->GetBytes() : 0) +
     TotalBytes(*this->EdgeWeights, this->RestHeights, this->HandleVertices, this->Transforms,
       this->TriangleTransforms, this->TriangleWeights);
@@ -150,7 +151,7 @@ Eigen::Vector3d FrameDeformer::TriangleSum(int vertex, const Eigen::VectorXd& fr
 Eigen::Vector3d FrameDeformer::RightHandSide(int unknown, const HandleTargets& targets,
   const Matrices& transforms, const DeformedSurface& result) const
 {
-  const HandleLaplacian& system = *this->Positions;
+  const HandleLaplacian& system = *this->PositionSystem;
   const Points& rest = *this->Problem.Rest;
   const bool isByTriangle = this->TriangleTransforms.rows() > 0;
   const Points* offsets =
@@ -194,7 +195,7 @@ Eigen::Vector3d FrameDeformer::RightHandSide(int unknown, const HandleTargets& t
 void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices& transforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
-  const HandleLaplacian& system = *this->Positions;
+  const HandleLaplacian& system = *this->PositionSystem;
   if (this->TriangleTransforms.rows() > 0 && this->TriangleWeights.rows() == 0)
   {
     this->TriangleWeights = CornerWeights(
@@ -228,9 +229,9 @@ void FrameDeformer::ScaleFrames(
   const Eigen::VectorXd heights =
     ColumnHeights(mesh, result.Positions, this->Model->LocalDepth, context);
   Matrices scaled = this->Transforms;
-  for (int i = 0; i < this->Positions->NumberOfLocals(); ++i)
+  for (int i = 0; i < this->PositionSystem->NumberOfLocals(); ++i)
   {
-    const int v = this->Positions->Vertex(i);
+    const int v = this->PositionSystem->Vertex(i);
     if (!this->Model->EnclosesVolume[mesh.Component(v)] || !this->Model->IsMeasured[v])
     {
       continue;
@@ -266,7 +267,7 @@ std::vector<double> FrameDeformer::VolumesWithoutSlivers(const Points& positions
 
 void FrameDeformer::CloseVolumes(Points& positions)
 {
-  const HandleLaplacian& system = *this->Positions;
+  const HandleLaplacian& system = *this->PositionSystem;
   const auto solve = [&system](const Points& gradient)
   {
     Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);

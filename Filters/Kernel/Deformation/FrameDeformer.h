@@ -48,14 +48,14 @@ public:
   const std::shared_ptr<const VolumeModel>& GetVolumeModel() const { return this->Model; }
 
   int GetNumberOfFactorizations() const override;
-  int GetNumberOfFreeVertices() const override { return this->Frames->NumberOfUnknowns(); }
+  int GetNumberOfFreeVertices() const override { return this->FrameSystem->NumberOfUnknowns(); }
   std::string GetWarning() const override { return this->Warning; }
 
   std::size_t GetBytes() const override;
 
   /// For what refines the result: the system of the positions, and the symmetric
   /// weights of the edges in it (#D).
-  std::shared_ptr<const HandleLaplacian> GetPositionSystem() const { return this->Positions; }
+  std::shared_ptr<const HandleLaplacian> GetPositionSystem() const { return this->PositionSystem; }
   std::shared_ptr<const Eigen::VectorXd> GetPositionWeights() const { return this->EdgeWeights; }
 
 protected:
@@ -71,7 +71,7 @@ protected:
     int Handle; ///< index in HandleProblem::Moving
   };
 
-  /// Writes into Transforms the linear map of each unknown of Frames and of
+  /// Writes into Transforms the linear map of each unknown of FrameSystem and of
   /// each vertex of HandleVertices, and into TriangleTransforms those of
   /// triangles where the method has them.
   virtual void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) = 0;
@@ -90,9 +90,9 @@ protected:
 
   std::shared_ptr<const Eigen::VectorXd> EdgeWeights;
   /// The system of the frames, and of the positions where it is the same.
-  std::shared_ptr<HandleLaplacian> Frames;
+  std::shared_ptr<HandleLaplacian> FrameSystem;
   /// The same object, or one with other weights or moving handles unknown.
-  std::shared_ptr<HandleLaplacian> Positions;
+  std::shared_ptr<HandleLaplacian> PositionSystem;
   /// The vertices of moving handles.
   std::vector<HandleVertex> HandleVertices;
   /// #V x 9, the identity where nothing moves; empty until first needed.

@@ -167,7 +167,7 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
   const Eigen::VectorXd soft = cartan::SquaredSoftWeights(problem, isUnknown, hold);
 
   std::vector<int> local(numberOfVertices, -1);
-  const auto number = [&](int v)
+  const auto addLocal = [&](int v)
   {
     if (local[v] < 0)
     {
@@ -182,7 +182,7 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
   {
     if (isUnknown[v])
     {
-      number(v);
+      addLocal(v);
     }
   }
   this->UnknownCount = this->NumberOfLocals();
@@ -193,7 +193,7 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
     const int v = this->Vertices[i];
     for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
-      this->Edges.push_back({ number(mesh.Neighbor(d)), (*edgeWeights)[d] });
+      this->Edges.push_back({ addLocal(mesh.Neighbor(d)), (*edgeWeights)[d] });
     }
     this->EdgeOffsets.push_back(static_cast<int>(this->Edges.size()));
   }

@@ -25,8 +25,8 @@ struct HandleProblem
   /// The handles that may move, in increasing order. The others keep their
   /// place: they are pinned.
   std::vector<int> Moving;
-  /// Empty, or #V weights of the handles' vertices: 0 does not hold, infinity
-  /// holds exactly, w in between adds w^2 |value - target|^2 to the sum of
+  /// Empty, or #V weights of the handles' vertices: 0 leaves them free, infinity
+  /// fixes them exactly, w in between adds w^2 |value - target|^2 to the sum of
   /// squared residuals over both directions of each edge.
   Eigen::VectorXd SoftWeights;
   /// Of the fields that spread from handle to handle, such as frames.

@@ -65,13 +65,13 @@ PoissonDeformer::PoissonDeformer(HandleProblem problem, Propagation propagation,
   const TriangleMesh& mesh = *this->Problem.Mesh;
   if (propagation == Propagation::Harmonic)
   {
-    this->Harmonic.emplace(this->Problem, this->Frames);
+    this->Harmonic.emplace(this->Problem, this->FrameSystem);
   }
   else
   {
-    this->Geodesic = GeodesicWeights(this->Problem, *this->Frames, context.Part(0.6, 1.0));
+    this->Geodesic = GeodesicWeights(this->Problem, *this->FrameSystem, context.Part(0.6, 1.0));
   }
-  for (const HandleLaplacian::Triangle& triangle : this->Positions->Triangles(this->Problem))
+  for (const HandleLaplacian::Triangle& triangle : this->PositionSystem->Triangles(this->Problem))
   {
     this->Triangles.push_back(triangle.Id);
   }
@@ -98,7 +98,7 @@ void PoissonDeformer::ComputeTransforms(
     MatrixAt(this->Transforms, held.Vertex) = targets.Motions[held.Handle].Linear;
   }
   const Field ofHandles = MotionBlend(targets.Motions).Coordinates();
-  const HandleLaplacian& frames = *this->Frames;
+  const HandleLaplacian& frames = *this->FrameSystem;
   const Field ofLocals =
     this->Harmonic ? this->Harmonic->Blend(ofHandles, context) : Field(this->Geodesic * ofHandles);
   Field blends = Field::Zero(this->Problem.Mesh->NumberOfVertices(), ofHandles.cols());

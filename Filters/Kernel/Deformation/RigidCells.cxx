@@ -46,7 +46,7 @@ RigidCells::RigidCells(const HandleProblem& problem, const HandleLaplacian& syst
     unknown[system.Vertex(i)] = i;
   }
   std::vector<int> site(mesh.NumberOfVertices(), -1);
-  const auto number = [&](int v)
+  const auto addSite = [&](int v)
   {
     if (site[v] < 0)
     {
@@ -58,21 +58,21 @@ RigidCells::RigidCells(const HandleProblem& problem, const HandleLaplacian& syst
   this->CellOfUnknown.resize(system.NumberOfUnknowns());
   for (const int v : OrderUnknowns(mesh, system, unknown))
   {
-    this->CellOfUnknown[unknown[v]] = number(v);
+    this->CellOfUnknown[unknown[v]] = addSite(v);
     this->Unknowns.push_back(unknown[v]);
   }
   for (int i = system.NumberOfUnknowns(); i < system.NumberOfLocals(); ++i)
   {
-    number(system.Vertex(i));
+    addSite(system.Vertex(i));
   }
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     if (moving[v] >= 0 && mesh.IsUsed(v))
     {
-      number(v);
+      addSite(v);
       for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
       {
-        number(mesh.Neighbor(d));
+        addSite(mesh.Neighbor(d));
       }
     }
   }
@@ -82,7 +82,7 @@ RigidCells::RigidCells(const HandleProblem& problem, const HandleLaplacian& syst
     const int v = this->Vertices[cell];
     for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
-      this->Spokes.push_back({ number(mesh.Neighbor(d)), edgeWeights[d] });
+      this->Spokes.push_back({ addSite(mesh.Neighbor(d)), edgeWeights[d] });
     }
     this->SpokeOffsets.push_back(static_cast<int>(this->Spokes.size()));
   }

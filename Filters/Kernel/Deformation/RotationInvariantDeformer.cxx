@@ -21,7 +21,7 @@ bool IsRotation(const Eigen::Matrix3d& matrix)
 RotationInvariantDeformer::RotationInvariantDeformer(
   HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
   : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.8))
-  , Harmonic(this->Problem, this->Frames)
+  , Harmonic(this->Problem, this->FrameSystem)
 {
   context.Report(1.0);
 }
@@ -34,7 +34,7 @@ bool RotationInvariantDeformer::UsesRotations(const HandleTargets& targets) cons
   }
   bool areAllIdentities = true;
   bool areAllRotations = true;
-  const auto look = [&](const Eigen::Matrix3d& linear)
+  const auto check = [&](const Eigen::Matrix3d& linear)
   {
     // The identity needs no projection: its blends are the identity.
     areAllIdentities = areAllIdentities && linear.isIdentity(1e-15);
@@ -44,14 +44,14 @@ bool RotationInvariantDeformer::UsesRotations(const HandleTargets& targets) cons
   {
     for (const HandleVertex& held : this->HandleVertices)
     {
-      look(HandleTransform(targets, held.Vertex, held.Handle));
+      check(HandleTransform(targets, held.Vertex, held.Handle));
     }
   }
   else
   {
     for (const HandleMotion& motion : targets.Motions)
     {
-      look(motion.Linear);
+      check(motion.Linear);
     }
   }
   return areAllRotations && !areAllIdentities;
@@ -70,7 +70,7 @@ void RotationInvariantDeformer::ComputeTransforms(
       projected(HandleTransform(targets, held.Vertex, held.Handle));
   }
 
-  const HandleLaplacian& frames = *this->Frames;
+  const HandleLaplacian& frames = *this->FrameSystem;
   if (targets.Transforms.rows() == 0)
   {
     this->BlendMotions(targets, project, context);
@@ -91,7 +91,7 @@ void RotationInvariantDeformer::ComputeTransforms(
 void RotationInvariantDeformer::AddIdentity(
   const Field& differences, bool project, const ExecutionContext& context)
 {
-  const HandleLaplacian& frames = *this->Frames;
+  const HandleLaplacian& frames = *this->FrameSystem;
   context.For(frames.NumberOfUnknowns(),
     [&](int begin, int end)
     {
@@ -107,7 +107,7 @@ void RotationInvariantDeformer::AddIdentity(
 void RotationInvariantDeformer::BlendMotions(
   const HandleTargets& targets, bool project, const ExecutionContext& context)
 {
-  const HandleLaplacian& frames = *this->Frames;
+  const HandleLaplacian& frames = *this->FrameSystem;
   const std::vector<HandleMotion>& motions = targets.Motions;
   const int numberOfMoving = static_cast<int>(motions.size());
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
@@ -160,7 +160,7 @@ void RotationInvariantDeformer::BlendMotions(
 
 void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& context)
 {
-  const HandleLaplacian& system = *this->Positions;
+  const HandleLaplacian& system = *this->PositionSystem;
   const Field& harmonic = this->Harmonic.GetWeights();
   const Points& rest = *this->Problem.Rest;
   const int numberOfUnknowns = system.NumberOfUnknowns();
@@ -212,8 +212,8 @@ void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& contex
 bool RotationInvariantDeformer::DeformDirectly(
   const HandleTargets& targets, Points& positions, const ExecutionContext& context)
 {
-  if (this->Positions != this->Frames || !this->Harmonic.IsStored() || targets.IsPerVertex() ||
-    this->UsesRotations(targets))
+  if (this->PositionSystem != this->FrameSystem || !this->Harmonic.IsStored() ||
+    targets.IsPerVertex() || this->UsesRotations(targets))
   {
     return false;
   }
@@ -222,7 +222,7 @@ bool RotationInvariantDeformer::DeformDirectly(
     this->ComputeDragFields(context);
   }
   const int numberOfMoving = static_cast<int>(targets.Motions.size());
-  const HandleLaplacian& system = *this->Positions;
+  const HandleLaplacian& system = *this->PositionSystem;
   context.For(system.NumberOfUnknowns(),
     [&](int begin, int end)
     {

@@ -48,7 +48,7 @@ double DirichletEnergy(const HandleLaplacian::Triangle& triangle, const Field& e
 ShapePreservingDeformer::ShapePreservingDeformer(
   HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
   : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.9))
-  , Harmonic(this->Problem, this->Frames)
+  , Harmonic(this->Problem, this->FrameSystem)
   , IterationSystem(backend)
 {
   context.Report(1.0);
@@ -74,7 +74,7 @@ Field ShapePreservingDeformer::Spread(const HandleTargets& targets, int componen
   const std::function<void(const HandleVertex&, double*)>& coordinates,
   const ExecutionContext& context) const
 {
-  const HandleLaplacian& frames = *this->Frames;
+  const HandleLaplacian& frames = *this->FrameSystem;
   if (targets.RotationVectors.rows() == 0 && targets.Transforms.rows() == 0)
   {
     Field ofHandles(static_cast<Eigen::Index>(targets.Motions.size()), components);
@@ -119,7 +119,7 @@ void ShapePreservingDeformer::ComputeTransforms(
 void ShapePreservingDeformer::BlendAngles(
   const HandleTargets& targets, const Eigen::Vector3d& axis, const ExecutionContext& context)
 {
-  const HandleLaplacian& frames = *this->Frames;
+  const HandleLaplacian& frames = *this->FrameSystem;
   const Field angle = this->Spread(
     targets, 1,
     [&](const HandleVertex& held, double* value)
@@ -141,7 +141,7 @@ void ShapePreservingDeformer::BlendRotations(
   const HandleTargets& targets, const ExecutionContext& context)
 {
   this->RequireLessThanTurns(targets);
-  const HandleLaplacian& frames = *this->Frames;
+  const HandleLaplacian& frames = *this->FrameSystem;
   Field eta = this->Spread(
     targets, 3,
     [&](const HandleVertex& held, double* value)
@@ -207,7 +207,7 @@ void ShapePreservingDeformer::BlendStretches(
   {
     return;
   }
-  const HandleLaplacian& frames = *this->Frames;
+  const HandleLaplacian& frames = *this->FrameSystem;
   const Field blends = this->Spread(
     targets, 9,
     [&](const HandleVertex& held, double* value)
@@ -294,7 +294,7 @@ bool ShapePreservingDeformer::Step(const Field& eta, const Anchors& anchors, Fie
 Field ShapePreservingDeformer::Iterate(
   Field eta, const HandleTargets& targets, const ExecutionContext& context)
 {
-  const HandleLaplacian& frames = *this->Frames;
+  const HandleLaplacian& frames = *this->FrameSystem;
   if (this->Triangles.empty())
   {
     this->Triangles = frames.Triangles(this->Problem);

@@ -242,7 +242,7 @@ void SimilarityDeformer::WarnOfSingularTransforms(const HandleTargets& targets)
 {
   IdSample mirrored;
   IdSample flattened;
-  const auto look = [&](const Eigen::Matrix3d& transform, long long id)
+  const auto check = [&](const Eigen::Matrix3d& transform, long long id)
   {
     const double size = transform.norm();
     const double determinant = transform.determinant();
@@ -263,7 +263,7 @@ void SimilarityDeformer::WarnOfSingularTransforms(const HandleTargets& targets)
       const int v = targets.Vertices[row];
       if (this->System.GetMovingHandles()[v] >= 0)
       {
-        look(MatrixAt(targets.Transforms, static_cast<Eigen::Index>(row)), v);
+        check(MatrixAt(targets.Transforms, static_cast<Eigen::Index>(row)), v);
       }
     }
   }
@@ -271,7 +271,7 @@ void SimilarityDeformer::WarnOfSingularTransforms(const HandleTargets& targets)
   {
     for (std::size_t k = 0; k < targets.Motions.size(); ++k)
     {
-      look(targets.Motions[k].Linear, this->Problem.Moving[k]);
+      check(targets.Motions[k].Linear, this->Problem.Moving[k]);
     }
   }
   const auto describe = [&](const IdSample& sample) {

@@ -6,7 +6,7 @@
 
 namespace cartan
 {
-/// How the surface is put together once each vertex's transform is known.
+/// How the surface is reconstructed once each vertex's transform is known.
 enum class SimilarityReconstruction
 {
   /// Not at all: positions as the first solve finds them, sheared.
@@ -46,11 +46,11 @@ enum class SimilarityReconstruction
 ///
 /// Then shear is removed: R_i is the rotation closest to M_i, s_i^2 the mean of
 /// its squared singular values (section 4), T_i = R_i or s_i R_i, and the
-/// surface is put together from T (SimilarityReconstruction). A similarity of
+/// surface is reconstructed from T (SimilarityReconstruction). A similarity of
 /// all handles together is reproduced exactly with T_i = s_i R_i.
 ///
 /// Refits fit rotations F to the result (FitRotations, with the weights of the
-/// edges) and put the surface together from edges again. One that starts from a
+/// edges) and reconstruct the surface from edges again. One that starts from a
 /// result of rotations R in edge form goes beyond F, to F R^-1 F: successive
 /// over-relaxation by the factor 2, the largest that cannot diverge, since what
 /// the surface makes of R lies between R and the limit. The limit is close to the

@@ -86,7 +86,7 @@ RingGradients::RingGradients(const TriangleMesh& mesh, const Points& rest,
 void RingGradients::NumberPositions(
   const TriangleMesh& mesh, const GradientConstraints& constraints)
 {
-  const auto number = [this](int v)
+  const auto addPosition = [this](int v)
   {
     if (this->PositionColumns[v] < 0)
     {
@@ -102,7 +102,7 @@ void RingGradients::NumberPositions(
     {
       continue;
     }
-    number(v);
+    addPosition(v);
     this->Active.push_back(v);
     for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
@@ -118,10 +118,10 @@ void RingGradients::NumberPositions(
   this->Active.insert(this->Active.end(), heldNeighbors.begin(), heldNeighbors.end());
   for (const int v : heldNeighbors)
   {
-    number(v);
+    addPosition(v);
     for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
-      number(mesh.Neighbor(d));
+      addPosition(mesh.Neighbor(d));
     }
   }
 }

@@ -21,7 +21,7 @@ namespace cartan
 /// - The forms describe a one-ring relative to its normal by projected lengths,
 ///   angles between projections, and heights. Between two surfaces an edge that is
 ///   nearly parallel to the normal may pass it on either side, and so its angle
-///   and all that follow may turn by a lap. Here the edges are interpolated as
+///   and all that follow may gain a full turn. Here the edges are interpolated as
 ///   vectors in frames that follow the one-rings (RingFrames), and scaled to the
 ///   interpolated lengths.
 /// - Terms of an edge of length l in both systems weigh 1 / l, as a bar's stiffness

@@ -268,7 +268,7 @@ void IsometricMorph::Average(
   double t, const Matrices& transitions, Matrices& frames, const ExecutionContext& context)
 {
   // A walk adds up the errors of all hinges on its way. Frames of another
-  // parameter are off by less, the more so on twists of several laps.
+  // parameter are off by less, the more so on twists of several full turns.
   const FrameMemory::Known start = this->Known.Nearest(t);
   for (int triangle = 0; triangle < this->Topology.NumberOfTriangles(); ++triangle)
   {

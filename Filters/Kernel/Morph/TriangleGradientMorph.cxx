@@ -170,7 +170,7 @@ Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
   {
     return rotations.row(t).isZero(0.0) ? guess : VectorFromRotation(MatrixAt(rotations, t), guess);
   };
-  const auto take = [&](int t)
+  const auto settle = [&](int t)
   {
     isDone[t] = 1;
     const Eigen::Vector3d vector = vectors.row(t);
@@ -184,7 +184,7 @@ Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
   };
   for (const int seed : LeastTurned(mesh, rotations, vectors))
   {
-    take(seed);
+    settle(seed);
     while (!queue.empty())
     {
       const auto [distance, t, from] = queue.top();
@@ -192,7 +192,7 @@ Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
       if (!isDone[t])
       {
         vectors.row(t) = nearTo(t, vectors.row(from).transpose()).transpose();
-        take(t);
+        settle(t);
       }
     }
   }
