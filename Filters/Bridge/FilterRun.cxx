@@ -13,6 +13,7 @@
 #include "vtkSMPTools.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <new>
 
 namespace cartan
@@ -44,24 +45,38 @@ struct PreparedInput
   std::size_t GetBytes() const { return 1024 * this->TheSurface->GetActualMemorySize(); }
 };
 
+/// Between blocks of a long loop observers may stop it: the slowest loops take some
+/// microseconds for each element.
+constexpr int Block = 1 << 15;
+
+/// Tells the filter's observers, and whether to go on.
+bool ReportProgress(vtkAlgorithm* algorithm, double fraction)
+{
+  algorithm->UpdateProgress(fraction);
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+  return !algorithm->CheckAbort(); // upstream's request to stop counts too
+#else
+  return algorithm->GetAbortExecute() == 0;
+#endif
+}
+
 ExecutionContext MakeContext(vtkAlgorithm* algorithm)
 {
   return ExecutionContext(
-    [](int n, const ExecutionContext::Range& body)
+    [algorithm](int n, const ExecutionContext::Range& body)
     {
-      vtkSMPTools::For(0, n,
-        [&body](vtkIdType begin, vtkIdType end)
-        { body(static_cast<int>(begin), static_cast<int>(end)); });
+      for (int first = 0; first < n; first += Block)
+      {
+        if (first > 0 && !ReportProgress(algorithm, algorithm->GetProgress()))
+        {
+          throw Error(ErrorCode::Aborted, "Stopped on request.");
+        }
+        vtkSMPTools::For(first, first + std::min(Block, n - first),
+          [&body](vtkIdType begin, vtkIdType end)
+          { body(static_cast<int>(begin), static_cast<int>(end)); });
+      }
     },
-    [algorithm](double fraction)
-    {
-      algorithm->UpdateProgress(fraction);
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
-      return !algorithm->CheckAbort(); // upstream's request to stop counts too
-#else
-      return algorithm->GetAbortExecute() == 0;
-#endif
-    });
+    [algorithm](double fraction) { return ReportProgress(algorithm, fraction); });
 }
 }
 
