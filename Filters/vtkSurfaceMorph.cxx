@@ -95,6 +95,26 @@ public:
     return std::clamp(parameter, 0.0, 1.0);
   }
 
+  /// The times of the output's steps, `count` from each key frame to the next. Each is
+  /// one rounded quotient, .6 and not .6000000000000001, so that the times of several
+  /// filters meet.
+  std::vector<double> StepsBetween(int count) const
+  {
+    const std::size_t last = this->Parameters.size() - 1;
+    std::vector<double> steps;
+    for (std::size_t k = 0; k < last; ++k)
+    {
+      for (int step = 0; step < count; ++step)
+      {
+        steps.push_back(this->Times.empty()
+            ? static_cast<double>(k * count + step) / static_cast<double>(last * count)
+            : ((count - step) * this->Times[k] + step * this->Times[k + 1]) / count);
+      }
+    }
+    steps.push_back(this->ToTime(1.0));
+    return steps;
+  }
+
   /// The first time step that is not after the one before it; 0 if all are.
   std::size_t FirstOutOfOrder() const
   {
@@ -176,17 +196,7 @@ int vtkSurfaceMorph::RequestInformation(
   info->Remove(Pipeline::TIME_RANGE());
   if (this->FollowTime && state.Parameters.size() > 1 && !state.FirstOutOfOrder())
   {
-    std::vector<double> steps;
-    for (std::size_t k = 0; k + 1 < state.Parameters.size(); ++k)
-    {
-      for (int step = 0; step < this->StepsBetweenKeyFrames; ++step)
-      {
-        const double part = static_cast<double>(step) / this->StepsBetweenKeyFrames;
-        steps.push_back(
-          state.ToTime((1.0 - part) * state.Parameters[k] + part * state.Parameters[k + 1]));
-      }
-    }
-    steps.push_back(state.ToTime(1.0));
+    const std::vector<double> steps = state.StepsBetween(this->StepsBetweenKeyFrames);
     const double range[2] = { steps.front(), steps.back() };
     info->Set(Pipeline::TIME_STEPS(), steps.data(), static_cast<int>(steps.size()));
     info->Set(Pipeline::TIME_RANGE(), range, 2);

@@ -185,6 +185,23 @@ TEST(VtkSurfaceMorph, OffersTimeStepsAndFollowsTime)
   EXPECT_FALSE(fixture.Filter->GetOutputInformation(0)->Has(Pipeline::TIME_STEPS()));
 }
 
+TEST(VtkSurfaceMorph, OffersTimesThatMeetThoseOfOthers)
+{
+  // Each time is the number that one would write: 0.6, not 0.6000000000000001.
+  Fixture fixture;
+  for (const int steps : { 3, 5, 10, 15, 30 })
+  {
+    fixture.Filter->SetStepsBetweenKeyFrames(steps);
+    fixture.Filter->UpdateInformation();
+    vtkInformation* info = fixture.Filter->GetOutputInformation(0);
+    ASSERT_EQ(info->Length(Pipeline::TIME_STEPS()), steps + 1);
+    for (int i = 0; i <= steps; ++i)
+    {
+      EXPECT_EQ(info->Get(Pipeline::TIME_STEPS())[i], static_cast<double>(i) / steps);
+    }
+  }
+}
+
 TEST(VtkSurfaceMorph, InterpolatesTheTimeStepsOfOneInput)
 {
   // Six time steps at uneven times, against the same as six inputs.
