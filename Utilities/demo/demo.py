@@ -41,8 +41,11 @@ def write_rest_surface(pose, path):
 def mark(pose, surface):
     """A Mark Handle filter per region."""
     for handle_id, handle in enumerate(pose.handles, 1):
-        for region in handle.regions:
-            surface = MarkHandle(registrationName=f"{pose.title}: {handle.name}", Input=surface)
+        for number, region in enumerate(handle.regions, 1):
+            # States find filters by their names.
+            part = f" {number}" if len(handle.regions) > 1 else ""
+            surface = MarkHandle(registrationName=f"{pose.title}: {handle.name}{part}",
+                                 Input=surface)
             surface.HandleId = handle_id
             if isinstance(region, Sphere):
                 surface.Region = "Sphere"
