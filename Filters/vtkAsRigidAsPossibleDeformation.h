@@ -158,6 +158,7 @@ protected:
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
   void AddSettings(cartan::ContentKey& settings) const override;
   void ForgetResults() override;
+  double ProgressBeforeMotion() const override { return 0.3; }
 
 private:
   int Energy = SPOKES;

@@ -4,6 +4,7 @@
 #include "Bridge/FilterRun.h"
 #include "Bridge/HandleArrays.h"
 #include "Bridge/InputPreparation.h"
+#include "Bridge/MarkedPoints.h"
 #include "Bridge/SelectionReader.h"
 #include "Kernel/Mesh/GeodesicDistance.h"
 #include "Kernel/Mesh/GrowByRings.h"
@@ -12,6 +13,7 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkExtractSelection.h"
+#include "vtkIdTypeArray.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -116,50 +118,6 @@ std::shared_ptr<const cartan::Surface> GrowPrepared(
   }
   return surface;
 }
-
-// A new array with the handle ids that `input` has already; all free if it has
-// no such array.
-vtkSmartPointer<vtkIntArray> CopyHandles(vtkPolyData* input, const std::string& name)
-{
-  const vtkIdType count = input->GetNumberOfPoints();
-  auto handles = vtkSmartPointer<vtkIntArray>::New();
-  handles->SetName(name.c_str());
-  handles->SetNumberOfTuples(count);
-  handles->FillValue(0);
-  if (vtkAbstractArray* existing = input->GetPointData()->GetAbstractArray(name.c_str()))
-  {
-    auto* array = vtkDataArray::SafeDownCast(existing);
-    const std::string advice = "it is not a list of handle ids; remove it or choose another "
-                               "HandleArrayName.";
-    if (!array)
-    {
-      throw cartan::Error(cartan::ErrorCode::BadInput,
-        "The point array \"" + name + "\" of the input has no numbers: " + advice);
-    }
-    const std::vector<int> ids = cartan::ReadHandleIds(array, name, count, advice);
-    std::copy(ids.begin(), ids.end(), handles->GetPointer(0));
-  }
-  return handles;
-}
-
-// Gives the points in `mask` the id; returns how many of them have it then.
-vtkIdType Mark(vtkIntArray* handles, const cartan::PointMask& mask, int id, bool overwrite)
-{
-  vtkIdType count = 0;
-  for (vtkIdType i = 0; i < handles->GetNumberOfTuples(); ++i)
-  {
-    if (mask[i])
-    {
-      const int current = handles->GetValue(i);
-      if (overwrite || current == 0)
-      {
-        handles->SetValue(i, id);
-      }
-      count += handles->GetValue(i) == id;
-    }
-  }
-  return count;
-}
 }
 
 // A polydata and its counterparts in the other data objects.
@@ -168,6 +126,7 @@ struct vtkMarkHandle::Block
   vtkPolyData* Input = nullptr;
   vtkPolyData* Evaluated = nullptr; // null: nothing is selected in this block
   vtkSmartPointer<vtkPolyData> Output;
+  vtkIdType FirstPoint = 0; // its number, counted on from the block before
 };
 
 // Makes `output` have the structure of `input`, and pairs their blocks.
@@ -176,9 +135,11 @@ std::vector<vtkMarkHandle::Block> vtkMarkHandle::MakeBlocks(
 {
   if (auto* surface = vtkPolyData::SafeDownCast(input))
   {
-    return { { surface, vtkPolyData::SafeDownCast(evaluated), vtkPolyData::SafeDownCast(output) } };
+    return { { surface, vtkPolyData::SafeDownCast(evaluated), vtkPolyData::SafeDownCast(output),
+      0 } };
   }
   std::vector<Block> blocks;
+  vtkIdType numberOfPoints = 0;
   auto* composite = vtkCompositeDataSet::SafeDownCast(input);
   auto* evaluatedComposite = vtkCompositeDataSet::SafeDownCast(evaluated);
   auto* outputComposite = vtkCompositeDataSet::SafeDownCast(output);
@@ -201,12 +162,15 @@ std::vector<vtkMarkHandle::Block> vtkMarkHandle::MakeBlocks(
       : nullptr;
     block.Output = vtkSmartPointer<vtkPolyData>::New();
     outputComposite->SetDataSet(iterator, block.Output);
+    block.FirstPoint = numberOfPoints;
+    numberOfPoints += surface->GetNumberOfPoints();
     blocks.push_back(block);
   }
   return blocks;
 }
 
 vtkMarkHandle::vtkMarkHandle()
+  : MarkedPointIds(vtkSmartPointer<vtkIdTypeArray>::New())
 {
   this->SetNumberOfInputPorts(2);
 }
@@ -249,6 +213,47 @@ void vtkMarkHandle::SetSelectionExtractor(vtkExtractSelection* extractor)
 vtkExtractSelection* vtkMarkHandle::GetSelectionExtractor()
 {
   return this->SelectionExtractor;
+}
+
+void vtkMarkHandle::SetNumberOfPointIds(int count)
+{
+  if (count < 0)
+  {
+    vtkErrorMacro("A list has 0 point ids or more; got " << count << ".");
+    return;
+  }
+  if (count != this->GetNumberOfPointIds())
+  {
+    this->PointIds.resize(count, 0);
+    this->Modified();
+  }
+}
+
+void vtkMarkHandle::SetPointId(int index, vtkIdType id)
+{
+  if (index < 0)
+  {
+    vtkErrorMacro("The list of point ids begins at 0; got " << index << ".");
+    return;
+  }
+  this->SetNumberOfPointIds(std::max(index + 1, this->GetNumberOfPointIds()));
+  this->SetMember(this->PointIds[index], id);
+}
+
+vtkIdType vtkMarkHandle::GetPointId(int index) const
+{
+  return index >= 0 && index < this->GetNumberOfPointIds() ? this->PointIds[index] : -1;
+}
+
+vtkIdTypeArray* vtkMarkHandle::GetMarkedPointIds()
+{
+  this->MarkedPointIds->SetNumberOfTuples(0);
+  for (const vtkIdType id :
+    cartan::FindMarked(this->GetOutputDataObject(0), this->HandleArrayName, this->HandleId))
+  {
+    this->MarkedPointIds->InsertNextValue(id);
+  }
+  return this->MarkedPointIds;
 }
 
 const char* vtkMarkHandle::GetRegionSourceAsString()
@@ -329,6 +334,10 @@ void vtkMarkHandle::MarkBlock(
   {
     cartan::AddSelected(block.Evaluated, block.Input, mask);
   }
+  if (this->UsesSelection())
+  {
+    cartan::AddPointIds(this->PointIds, block.FirstPoint, mask);
+  }
   context.Report(0.2);
   const auto grow = [&](vtkPolyData* input, cartan::PointMask& grown)
   { return Grow(input, this->GrowRings, this->GrowDistance, grown, context.Part(0.2, 0.9)); };
@@ -339,8 +348,8 @@ void vtkMarkHandle::MarkBlock(
     run.KeepSurface(surface);
   }
 
-  auto handles = CopyHandles(block.Input, this->HandleArrayName);
-  this->NumberOfMarkedPoints += Mark(handles, mask, this->HandleId, this->Overwrite);
+  auto handles = cartan::CopyHandles(block.Input, this->HandleArrayName);
+  this->NumberOfMarkedPoints += cartan::Mark(handles, mask, this->HandleId, this->Overwrite);
   block.Output->ShallowCopy(block.Input);
   block.Output->GetPointData()->AddArray(handles);
   if (!block.Output->GetPointData()->GetScalars())
@@ -360,14 +369,17 @@ void vtkMarkHandle::Execute(cartan::FilterRun& run)
   }
   vtkDataObject* input = run.InputObject();
   vtkSelection* selection = vtkSelection::SafeDownCast(run.InputObject(1));
-  const bool usesSelection = selection && selection->GetNumberOfNodes() > 0 &&
-    (this->RegionSource == SELECTION || this->RegionSource == FUNCTION_OR_SELECTION);
   vtkSmartPointer<vtkDataObject> evaluated;
-  if (usesSelection)
+  if (selection && selection->GetNumberOfNodes() > 0 && this->UsesSelection())
   {
     evaluated = cartan::EvaluateSelection(input, selection, this->SelectionExtractor, this);
   }
   const std::vector<Block> blocks = MakeBlocks(input, evaluated, run.OutputObject());
+  if (this->UsesSelection() && !blocks.empty())
+  {
+    cartan::RequirePointIds(
+      this->PointIds, blocks.back().FirstPoint + blocks.back().Input->GetNumberOfPoints());
+  }
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     const double count = static_cast<double>(blocks.size());
@@ -375,7 +387,7 @@ void vtkMarkHandle::Execute(cartan::FilterRun& run)
   }
   if (this->NumberOfMarkedPoints == 0)
   {
-    run.Warn(this->DescribeEmptyRegion(selection != nullptr));
+    run.Warn(this->DescribeEmptyRegion(selection || !this->PointIds.empty()));
   }
 }
 
@@ -388,11 +400,12 @@ std::string vtkMarkHandle::DescribeEmptyRegion(bool hasSelection)
   }
   if (this->RegionSource == SELECTION && !hasSelection)
   {
-    return text + "RegionSource is Selection, but there is no selection on port 1.";
+    return text +
+      "RegionSource is Selection, but there is neither a selection on port 1 nor PointIds.";
   }
   if (this->RegionSource == FUNCTION_OR_SELECTION && !this->Region && !hasSelection)
   {
-    return text + "there is neither a region function nor a selection on port 1.";
+    return text + "there is neither a region function nor a selection on port 1 nor PointIds.";
   }
   return text +
     (this->Overwrite ? "the region has no points."
@@ -406,6 +419,7 @@ void vtkMarkHandle::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "HandleArrayName: " << this->HandleArrayName << "\n";
   os << indent << "RegionSource: " << this->GetRegionSourceAsString() << "\n";
   os << indent << "InsideOut: " << this->InsideOut << "\n";
+  os << indent << "PointIds: " << this->PointIds.size() << "\n";
   os << indent << "GrowRings: " << this->GrowRings << "\n";
   os << indent << "GrowDistance: " << this->GrowDistance << "\n";
   os << indent << "Overwrite: " << this->Overwrite << "\n";

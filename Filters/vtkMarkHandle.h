@@ -19,9 +19,9 @@
  *
  * The region is given by an implicit function (points with a value <= 0 are in:
  * the inside of a box, sphere or cylinder, the back side of a plane), by the
- * selection (points of selected cells count as selected), or both, and can be
- * grown over the surface by rings of edges or by geodesic distance. Points in
- * no triangle can be marked, but the region does not grow from or to them.
+ * selection (points of selected cells count as selected) with a list of point
+ * ids, or by all of them, and can be grown over the surface by rings of edges or by geodesic
+ * distance. Points in no triangle can be marked, but the region does not grow from or to them.
  *
  * A region without points gives a warning and no new marks, because this can
  * happen while a widget is dragged.
@@ -40,13 +40,14 @@
 #include "vtkSurfaceFilter.h"
 
 #include <string> // For the array's name
-#include <vector> // For blocks
+#include <vector> // For blocks and ids
 
 namespace cartan
 {
 class ExecutionContext;
 }
 class vtkExtractSelection;
+class vtkIdTypeArray;
 class vtkImplicitFunction;
 class vtkSelection;
 
@@ -97,8 +98,8 @@ public:
   /**
    * Which points form the region. FUNCTION_OR_SELECTION, the default: the
    * points in either; a missing one contributes none. FUNCTION and SELECTION
-   * use one and ignore the other. ALL_POINTS needs neither; with HandleId 0 it
-   * clears all marks.
+   * use one and ignore the other. The point ids are part of the selection.
+   * ALL_POINTS needs neither; with HandleId 0 it clears all marks.
    */
   vtkSetClampMacro(RegionSource, int, FUNCTION_OR_SELECTION, ALL_POINTS);
   vtkGetMacro(RegionSource, int);
@@ -127,6 +128,19 @@ public:
   vtkSetMacro(InsideOut, bool);
   vtkGetMacro(InsideOut, bool);
   vtkBooleanMacro(InsideOut, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Points of the region by their ids, >= 0 and less than the number of points;
+   * others are an error. In a composite data set, ids are counted on from block
+   * to block. Unlike a selection they need no other filter, so that states and
+   * traces in Python hold them. Default: none.
+   */
+  void SetNumberOfPointIds(int count);
+  int GetNumberOfPointIds() const { return static_cast<int>(this->PointIds.size()); }
+  void SetPointId(int index, vtkIdType id);
+  vtkIdType GetPointId(int index) const;
   ///@}
 
   ///@{
@@ -175,6 +189,13 @@ public:
   vtkGetMacro(NumberOfMarkedPoints, vtkIdType);
 
   /**
+   * The ids of the points of the output that have HandleId, increasing, and counted
+   * on from block to block in a composite data set: what PointIds would have to be
+   * to mark them again. Empty with HandleId 0.
+   */
+  vtkIdTypeArray* GetMarkedPointIds();
+
+  /**
    * Includes the region's function with its transform.
    */
   vtkMTimeType GetMTime() override;
@@ -198,6 +219,10 @@ private:
   /// Makes `output` have the structure of `input`, and pairs their blocks.
   static std::vector<Block> MakeBlocks(
     vtkDataObject* input, vtkDataObject* evaluated, vtkDataObject* output);
+  bool UsesSelection() const
+  {
+    return this->RegionSource == SELECTION || this->RegionSource == FUNCTION_OR_SELECTION;
+  }
   void MarkBlock(
     const Block& block, cartan::FilterRun& run, const cartan::ExecutionContext& context);
 
@@ -214,6 +239,8 @@ private:
   vtkSmartPointer<vtkImplicitFunction> Region;
   vtkSmartPointer<vtkExtractSelection> SelectionExtractor;
   vtkIdType NumberOfMarkedPoints = 0;
+  std::vector<vtkIdType> PointIds;
+  vtkSmartPointer<vtkIdTypeArray> MarkedPointIds;
 };
 
 #endif

@@ -11,9 +11,8 @@
 #include "Kernel/Deformation/SliverRemoval.h"
 #include "vtkHandleMotion.h"
 
-#include "vtkBoundingBox.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -45,6 +44,9 @@ struct Preparation
 
 namespace
 {
+/// More boxes than anybody grasps one by one; each update sends them to the window.
+constexpr vtkIdType MaximumNumberOfBounds = 1000;
+
 void AddTransformArrays(
   const cartan::DeformedSurface& result, bool frameChange, bool rotationVector, vtkPolyData* output)
 {
@@ -75,6 +77,7 @@ void AddTransformArrays(
 class vtkSurfaceDeformation::Internals
 {
 public:
+  vtkNew<vtkDoubleArray> HandleBounds;
   cartan::MotionTable Motions;
   int Factorizations = 0;
   int FreePoints = 0;
@@ -245,31 +248,28 @@ double vtkSurfaceDeformation::GetMotionTime() const
   return this->State->MotionTime;
 }
 
+vtkDataObject* vtkSurfaceDeformation::InputIfAny()
+{
+  return this->GetNumberOfInputConnections(0) ? this->GetInputDataObject(0, 0) : nullptr;
+}
+
 double* vtkSurfaceDeformation::GetActiveHandleBounds()
 {
-  vtkBoundingBox handle;
-  vtkBoundingBox all;
-  const auto add = [&](vtkPolyData* surface)
+  vtkMath::UninitializeBounds(this->ActiveHandleBounds);
+  const auto boxes = cartan::WidgetBoxes(this->InputIfAny(), this->HandleArrayName);
+  const auto found = boxes.find(this->ActiveHandle);
+  if (found != boxes.end())
   {
-    if (surface && surface->GetNumberOfPoints() > 0)
-    {
-      handle.AddBox(cartan::BoundsOfHandle(surface, this->HandleArrayName, this->ActiveHandle));
-      all.AddBounds(surface->GetBounds());
-    }
-  };
-  vtkDataObject* input =
-    this->GetNumberOfInputConnections(0) ? this->GetInputDataObject(0, 0) : nullptr;
-  add(vtkPolyData::SafeDownCast(input));
-  if (auto* composite = vtkCompositeDataSet::SafeDownCast(input))
-  {
-    auto blocks = vtk::TakeSmartPointer(composite->NewIterator());
-    for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
-    {
-      add(vtkPolyData::SafeDownCast(blocks->GetCurrentDataObject()));
-    }
+    found->second.GetBounds(this->ActiveHandleBounds);
   }
-  cartan::WidgetBox(handle, all).GetBounds(this->ActiveHandleBounds);
   return this->ActiveHandleBounds;
+}
+
+vtkDoubleArray* vtkSurfaceDeformation::GetHandleBounds()
+{
+  cartan::WriteBoxes(cartan::WidgetBoxes(this->InputIfAny(), this->HandleArrayName),
+    MaximumNumberOfBounds, this->State->HandleBounds);
+  return this->State->HandleBounds;
 }
 
 vtkMTimeType vtkSurfaceDeformation::GetMTime()
@@ -337,8 +337,9 @@ std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::Filt
       auto fresh = std::make_unique<cartan::Preparation>();
       fresh->Problem = cartan::WithoutSlivers(
         this->MakeProblem(input, surface, handles, moving), run.Context().Part(0.1, 0.12));
-      fresh->Method = this->NewMethod(fresh->Problem,
-        static_cast<cartan::SolverBackend>(this->Solver), run.Context().Part(0.12, 0.6));
+      fresh->Method =
+        this->NewMethod(fresh->Problem, static_cast<cartan::SolverBackend>(this->Solver),
+          run.Context().Part(0.12, 0.75 * this->ProgressBeforeMotion()));
       this->State->Factorizations += fresh->Method.Deformer->GetNumberOfFactorizations();
       return fresh;
     });
@@ -405,7 +406,7 @@ void vtkSurfaceDeformation::Deform(cartan::FilterRun& run)
   const double ready = vtkTimerLog::GetUniversalTime();
   deformer.Deform(targets,
     this->GenerateFrameChange || this->GenerateRotationVector || this->NeedsTransforms(),
-    prepared->Result, run.Context().Part(0.8, 0.95));
+    prepared->Result, run.Context().Part(this->ProgressBeforeMotion(), 0.95));
   this->State->Factorizations += deformer.GetNumberOfFactorizations() - factorizations;
   run.Warn(deformer.GetWarning());
 

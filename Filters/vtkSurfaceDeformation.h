@@ -39,6 +39,7 @@
 #include <string> // For array names
 #include <vector> // For handle ids
 
+class vtkDoubleArray;
 class vtkHandleMotion;
 class vtkPolyData;
 
@@ -277,10 +278,17 @@ public:
    * A box around the points of handle ActiveHandle in the input as it is now,
    * (xmin, xmax, ymin, ymax, zmin, zmax), for a widget that moves the handle: a
    * little larger than the handle, and no side shorter than a tenth of the
-   * longest, so that flat handles can be grabbed too. Around all points if none
-   * belongs to the handle; the unit cube without input.
+   * longest, so that flat handles can be grabbed too. If no point belongs to the
+   * handle, or without input, the box is none: (1, -1, 1, -1, 1, -1).
    */
   double* GetActiveHandleBounds() VTK_SIZEHINT(6);
+
+  /**
+   * The same for all handles: for each, with increasing ids, its id and the six
+   * numbers of its box, of at most the first 1000 handles. It needs no update, so
+   * that user interfaces show handles before they move.
+   */
+  vtkDoubleArray* GetHandleBounds();
 
   /**
    * Includes the motions.
@@ -317,9 +325,17 @@ protected:
    */
   virtual bool NeedsTransforms() const { return false; }
 
+  /**
+   * Where the progress of an update stands when the motion itself begins, in (0.1,
+   * 0.9): a method that iterates leaves most of the way to the motion. Default:
+   * 0.8.
+   */
+  virtual double ProgressBeforeMotion() const { return 0.8; }
+
 private:
   class Internals;
 
+  vtkDataObject* InputIfAny();
   void Deform(cartan::FilterRun& run);
   std::string DescribeRemedy(cartan::ErrorCode code) const;
   cartan::HandleProblem MakeProblem(vtkPolyData* input,
@@ -338,7 +354,7 @@ private:
   std::string TransformArrayName;
   std::string ConstraintWeightArrayName;
   int ActiveHandle = 1;
-  double ActiveHandleBounds[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  double ActiveHandleBounds[6] = { 1.0, -1.0, 1.0, -1.0, 1.0, -1.0 };
   bool ConstrainHandlePositions = true;
   bool ScaleConstraintWeights = false;
   int LaplacianWeights = COTANGENT;

@@ -2,13 +2,41 @@
 #include "pqHandleBoxWidget.h"
 
 #include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqPipelineSource.h"
 #include "pqProxy.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
+#include "vtkCommand.h"
 #include "vtkSMNewWidgetRepresentationProxy.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMProxyListDomain.h"
+#include "vtkSMTrace.h"
+#include "vtkSMUncheckedPropertyHelper.h"
 
 #include <QPushButton>
+
+#include <utility>
+#include <vector>
+
+namespace
+{
+/// The filter among whose motions this one is.
+vtkSMProxy* FilterOf(vtkSMProxy* motion)
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
+  {
+    vtkSMProperty* property = source->getProxy()->GetProperty("Motion");
+    auto* motions = property ? property->FindDomain<vtkSMProxyListDomain>() : nullptr;
+    if (motions && motions->HasProxy(motion))
+    {
+      return source->getProxy();
+    }
+  }
+  return nullptr;
+}
+}
 
 pqHandleBoxWidget::pqHandleBoxWidget(vtkSMProxy* motion, vtkSMPropertyGroup* group, QWidget* parent)
   : Superclass(motion, group, parent, /*hideReferenceBounds=*/true)
@@ -16,6 +44,19 @@ pqHandleBoxWidget::pqHandleBoxWidget(vtkSMProxy* motion, vtkSMPropertyGroup* gro
   // Otherwise the box would start at the bounds of a data source.
   vtkSMPropertyHelper(this->widgetProxy(), "UseReferenceBounds").Set(1);
   this->widgetProxy()->UpdateVTKObjects();
+
+  this->Filter = FilterOf(motion);
+  if (this->Filter)
+  {
+    for (const auto& [name, event] : { std::make_pair("ActiveHandle", vtkCommand::ModifiedEvent),
+           std::make_pair("ActiveHandle", vtkCommand::UncheckedPropertyModifiedEvent),
+           std::make_pair("HandleBounds", vtkCommand::ModifiedEvent) })
+    {
+      pqCoreUtilities::connect(
+        this->Filter->GetProperty(name), event, this, SLOT(surroundHandle()));
+    }
+    this->surroundHandle();
+  }
 
   // The base resets to the bounds of a data source.
   if (auto* reset = this->findChild<QPushButton*>("resetBounds"))
@@ -42,15 +83,45 @@ pqHandleBoxWidget::~pqHandleBoxWidget()
 pqProxy* pqHandleBoxWidget::appliedFilter() const
 {
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (unsigned int i = 0; i < this->proxy()->GetNumberOfConsumers(); ++i)
+  auto* filter = model->findItem<pqProxy*>(this->Filter);
+  const bool isActive =
+    filter && vtkSMPropertyHelper(this->Filter, "Motion").GetAsProxy() == this->proxy();
+  return isActive && filter->modifiedState() != pqProxy::UNINITIALIZED ? filter : nullptr;
+}
+
+void pqHandleBoxWidget::surroundHandle()
+{
+  const int id = vtkSMUncheckedPropertyHelper(this->Filter, "ActiveHandle").GetAsInt();
+  const std::vector<double> rows =
+    vtkSMPropertyHelper(this->Filter, "HandleBounds").GetDoubleArray();
+  constexpr std::size_t width = 7; // id and bounds
+  std::size_t row = 0;
+  while (row + width <= rows.size() && rows[row] != id)
   {
-    auto* filter = model->findItem<pqProxy*>(this->proxy()->GetConsumerProxy(i));
-    if (filter && filter->modifiedState() != pqProxy::UNINITIALIZED)
-    {
-      return filter;
-    }
+    row += width;
   }
-  return nullptr;
+  const bool hadHandle = this->HasHandle;
+  this->HasHandle = row + width <= rows.size();
+  if (this->HasHandle)
+  {
+    // The links of the property group take the bounds to the box.
+    vtkSMPropertyHelper(this->proxy(), "ReferenceBounds").Set(&rows[row + 1], 6);
+    this->proxy()->UpdateVTKObjects();
+  }
+  if (this->HasHandle != hadHandle)
+  {
+    this->setWidgetVisible(this->HasHandle);
+  }
+  this->render();
+}
+
+void pqHandleBoxWidget::showEvent(QShowEvent* event)
+{
+  this->Superclass::showEvent(event);
+  if (!this->HasHandle)
+  {
+    this->setWidgetVisible(false);
+  }
 }
 
 void pqHandleBoxWidget::closeUndoSet()
@@ -84,6 +155,15 @@ void pqHandleBoxWidget::endDrag()
 {
   this->follow();
   this->closeUndoSet();
+  if (this->appliedFilter())
+  {
+    // What has changed within the scope is recorded: where the drag ended.
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", this->Filter);
+    for (const char* name : { "Position", "Rotation", "Scale" })
+    {
+      this->proxy()->GetProperty(name)->Modified();
+    }
+  }
   // Nothing is left to apply, but the panel has taken note of a change.
   if (this->Unmodified)
   {

@@ -3,11 +3,12 @@
  * @class pqHandleBoxWidget
  * @brief the box around a handle in the 3D view, which the surface follows
  *
- * ParaView's interactive box, with two differences. The box starts at the
- * bounds that the function `ReferenceBounds` of the property group gives, the
- * handle's, instead of at the bounds of the data; the handle moves as the box
- * does and can be grasped again. And once the filter has been applied, the
- * surface follows the box while it is dragged, without waiting for Apply.
+ * ParaView's interactive box, with these differences. The box starts at the
+ * bounds of the handle that the panel names, applied or not, instead of at the
+ * bounds of the data; the handle moves as the box does and can be grasped again.
+ * There is no box if no point belongs to the handle. Once the filter has been
+ * applied, the surface follows the box while it is dragged, without waiting for
+ * Apply. And a trace records where each drag ends.
  *
  * In XML: a property group with panel_widget="cartan_handle_box" and the
  * functions `Position`, `Rotation`, `Scale` and `ReferenceBounds`.
@@ -16,10 +17,12 @@
 #define pqHandleBoxWidget_h
 
 #include "pqBoxPropertyWidget.h"
+#include "vtkWeakPointer.h"
 
 #include <QPointer>
 
 class pqProxy;
+class vtkSMProxy;
 
 class pqHandleBoxWidget : public pqBoxPropertyWidget
 {
@@ -29,6 +32,13 @@ class pqHandleBoxWidget : public pqBoxPropertyWidget
 public:
   pqHandleBoxWidget(vtkSMProxy* motion, vtkSMPropertyGroup* group, QWidget* parent = nullptr);
   ~pqHandleBoxWidget() override;
+
+protected:
+  void showEvent(QShowEvent* event) override;
+
+private Q_SLOTS:
+  /// Puts the box around the handle that the panel names.
+  void surroundHandle();
 
 private:
   /// The filter whose handle moves, if it has been applied.
@@ -42,6 +52,12 @@ private:
   /// A drag is one step to undo.
   void closeUndoSet();
   bool IsUndoSetOpen = false;
+
+  /// The filter that offers this motion.
+  vtkWeakPointer<vtkSMProxy> Filter;
+
+  /// Whether the handle that the panel names has points.
+  bool HasHandle = true;
 
   /// The filter, if nothing but the box has changed since it was applied.
   QPointer<pqProxy> Unmodified;

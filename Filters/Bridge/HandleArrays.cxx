@@ -4,12 +4,15 @@
 #include "Bridge/PointArrays.h"
 #include "Kernel/Base/CountingSort.h"
 
-#include "vtkBoundingBox.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -118,13 +121,15 @@ Handles ReadHandles(vtkPolyData* input, const TriangleMesh& mesh, const std::str
   return handles;
 }
 
-vtkBoundingBox BoundsOfHandle(vtkPolyData* surface, const std::string& name, int id)
+namespace
 {
-  vtkBoundingBox bounds;
+/// Adds the points of the handles of `surface` to `boxes`.
+void AddHandleBoxes(vtkPolyData* surface, const std::string& name, HandleBoxes& boxes)
+{
   vtkDataArray* array = surface->GetPointData()->GetArray(name.c_str());
   if (!array || surface->GetNumberOfPoints() == 0)
   {
-    return bounds;
+    return;
   }
   try
   {
@@ -132,28 +137,25 @@ vtkBoundingBox BoundsOfHandle(vtkPolyData* surface, const std::string& name, int
     vtkPoints* points = surface->GetPoints();
     for (std::size_t v = 0; v < handles.size(); ++v)
     {
-      if (handles[v] == id)
+      if (handles[v] > 0)
       {
         double point[3];
         points->GetPoint(static_cast<vtkIdType>(v), point);
-        bounds.AddPoint(point);
+        boxes[handles[v]].AddPoint(point);
       }
     }
   }
   catch (const Error&)
   {
-    // An array that the update refuses has no handles.
+    // The update says what is wrong with the array.
   }
-  return bounds;
 }
 
+/// The box of a widget for a handle of these bounds. A handle of one point gets its
+/// size from the box around all points.
 vtkBoundingBox WidgetBox(const vtkBoundingBox& handle, const vtkBoundingBox& all)
 {
-  if (!all.IsValid())
-  {
-    return { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
-  }
-  vtkBoundingBox box = handle.IsValid() ? handle : all;
+  vtkBoundingBox box = handle;
   const double longest = box.GetMaxLength() > 0.0 ? box.GetMaxLength() : all.GetMaxLength();
   double margins[3];
   for (int axis = 0; axis < 3; ++axis)
@@ -162,5 +164,47 @@ vtkBoundingBox WidgetBox(const vtkBoundingBox& handle, const vtkBoundingBox& all
   }
   box.Inflate(margins[0], margins[1], margins[2]);
   return box;
+}
+}
+
+HandleBoxes WidgetBoxes(vtkDataObject* input, const std::string& name)
+{
+  HandleBoxes boxes;
+  vtkBoundingBox all;
+  const auto add = [&](vtkPolyData* surface)
+  {
+    if (surface && surface->GetNumberOfPoints() > 0)
+    {
+      AddHandleBoxes(surface, name, boxes);
+      all.AddBounds(surface->GetBounds());
+    }
+  };
+  add(vtkPolyData::SafeDownCast(input));
+  if (auto* composite = vtkCompositeDataSet::SafeDownCast(input))
+  {
+    auto blocks = vtk::TakeSmartPointer(composite->NewIterator());
+    for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
+    {
+      add(vtkPolyData::SafeDownCast(blocks->GetCurrentDataObject()));
+    }
+  }
+  for (auto& entry : boxes)
+  {
+    entry.second = WidgetBox(entry.second, all);
+  }
+  return boxes;
+}
+
+void WriteBoxes(const HandleBoxes& boxes, vtkIdType maximum, vtkDoubleArray* table)
+{
+  table->SetNumberOfComponents(7);
+  table->SetNumberOfTuples(0);
+  for (auto entry = boxes.begin(); entry != boxes.end() && table->GetNumberOfTuples() < maximum;
+       ++entry)
+  {
+    double row[7] = { static_cast<double>(entry->first) };
+    entry->second.GetBounds(row + 1);
+    table->InsertNextTuple(row);
+  }
 }
 }

@@ -3,13 +3,16 @@
 
 #include "Kernel/Mesh/TriangleMesh.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkType.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
-class vtkBoundingBox;
 class vtkDataArray;
+class vtkDataObject;
+class vtkDoubleArray;
 class vtkPolyData;
 
 namespace cartan
@@ -37,11 +40,15 @@ struct Handles
 /// such array, or none of whole numbers >= 0.
 Handles ReadHandles(vtkPolyData* input, const TriangleMesh& mesh, const std::string& name);
 
-/// The box around the points of handle `id`; invalid if there are none.
-vtkBoundingBox BoundsOfHandle(vtkPolyData* surface, const std::string& name, int id);
+/// The box of each handle that has points, by its id.
+using HandleBoxes = std::map<int, vtkBoundingBox>;
 
-/// The box of a widget that moves a handle of these bounds: a little larger, and no
-/// side shorter than a tenth of the longest. Around all points if the handle has
-/// none; the unit cube without points.
-vtkBoundingBox WidgetBox(const vtkBoundingBox& handle, const vtkBoundingBox& all);
+/// The boxes with which widgets move the handles of a surface, or of all blocks of a
+/// composite data set: a little larger than the handles, and no side shorter than a
+/// tenth of the longest. An array that an update refuses has no handles.
+HandleBoxes WidgetBoxes(vtkDataObject* input, const std::string& name);
+
+/// Makes `table` hold a row for each of the first `maximum` boxes: id, xmin, xmax, ymin,
+/// ymax, zmin, zmax.
+void WriteBoxes(const HandleBoxes& boxes, vtkIdType maximum, vtkDoubleArray* table);
 }

@@ -7,6 +7,7 @@
 
 #include "vtkMatrix4x4.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace
@@ -190,4 +191,18 @@ TEST_F(AsRigidAsPossibleDeformation, HasDocumentedDefaultsAndClamps)
   std::ostringstream text;
   filter->Print(text);
   EXPECT_NE(text.str().find("InitialGuess: 0"), std::string::npos);
+}
+
+TEST_F(AsRigidAsPossibleDeformation, LeavesMostOfTheProgressToTheIterations)
+{
+  this->Filter->SetMaximumIterations(40);
+  this->Filter->SetTolerance(0.0);
+  vtkNew<vtktest::ProgressLog> progress;
+  this->Filter->AddObserver(vtkCommand::ProgressEvent, progress);
+  this->Filter->Update();
+  ASSERT_GT(this->Filter->GetNumberOfIterations(), 10);
+  const auto inTheLastHalf = std::count_if(progress->Fractions.begin(), progress->Fractions.end(),
+    [](double fraction) { return fraction > 0.4 && fraction < 0.9; });
+  EXPECT_GT(inTheLastHalf, 20);
+  EXPECT_TRUE(std::is_sorted(progress->Fractions.begin(), progress->Fractions.end()));
 }

@@ -127,11 +127,32 @@ TEST(VtkHandleArrays, BoundTheActiveHandleOfAnyNumericType)
   EXPECT_GT(ofHandle[4], 2.5);
   EXPECT_GT(ofHandle[5], 4.0);
   EXPECT_EQ(boundsOf("Doubles", 2), ofHandle);
-  // Where no handle can be read, the box is that of all points.
-  const std::vector<double> ofAll = boundsOf("Handle", 7);
-  EXPECT_LT(ofAll[4], 0.0);
-  EXPECT_EQ(boundsOf("Fractions", 2), ofAll);
-  EXPECT_EQ(boundsOf("None", 2), ofAll);
+  // Where no handle can be read, there is no box: a widget would move nothing.
+  const std::vector<double> none = { 1.0, -1.0, 1.0, -1.0, 1.0, -1.0 };
+  EXPECT_EQ(boundsOf("Handle", 7), none);
+  EXPECT_EQ(boundsOf("Fractions", 2), none);
+  EXPECT_EQ(boundsOf("None", 2), none);
+  deform->SetInputConnection(nullptr);
+  EXPECT_EQ(boundsOf("Handle", 2), none);
+}
+
+TEST(VtkHandleArrays, BoundAllHandles)
+{
+  vtkNew<vtkRotationInvariantDeformation> deform;
+  EXPECT_EQ(deform->GetHandleBounds()->GetNumberOfTuples(), 0);
+  deform->SetInputData(MarkedBar());
+  vtkDoubleArray* table = deform->GetHandleBounds();
+  ASSERT_EQ(table->GetNumberOfTuples(), 2);
+  for (int id = 1; id <= 2; ++id)
+  {
+    deform->SetActiveHandle(id);
+    const double* bounds = deform->GetActiveHandleBounds();
+    EXPECT_EQ(table->GetComponent(id - 1, 0), id);
+    for (int i = 0; i < 6; ++i)
+    {
+      EXPECT_EQ(table->GetComponent(id - 1, i + 1), bounds[i]);
+    }
+  }
 }
 
 TEST(VtkSurfaceDeformation, RefusesTargetsBeforeItPreparesTheMethod)

@@ -517,16 +517,61 @@ TEST(MarkHandle, UsesTheExtractorItIsGiven)
   EXPECT_EQ(extractor->GetNumberOfInputConnections(0), 0);
 }
 
+TEST(MarkHandle, MarksPointsByTheirIds)
+{
+  Marker marker;
+  const vtkIdType ids[] = { 40, 3, 3, 120 };
+  for (int i = 0; i < 4; ++i)
+  {
+    marker.Filter->SetPointId(i, ids[i]);
+  }
+  EXPECT_EQ(marker.Run(), (Ids{ 3, 40, 120 }));
+  EXPECT_EQ(marker.Filter->GetPointId(0), 40);
+  EXPECT_EQ(marker.Filter->GetPointId(4), -1);
+  vtkIdTypeArray* marked = marker.Filter->GetMarkedPointIds();
+  ASSERT_EQ(marked->GetNumberOfTuples(), 3);
+  EXPECT_EQ(marked->GetValue(2), 120);
+  // They add to a function, as a selection does.
+  marker.Filter->SetRegion(MakeSphere(0.0, 0.0, 0.01));
+  EXPECT_EQ(marker.Run(), (Ids{ 0, 3, 40, 120 }));
+  marker.Filter->SetRegionSourceToFunction();
+  EXPECT_EQ(marker.Run(), (Ids{ 0 }));
+  marker.Filter->SetRegionSourceToSelection();
+  EXPECT_EQ(marker.Run(), (Ids{ 3, 40, 120 }));
+  marker.Filter->SetNumberOfPointIds(1);
+  EXPECT_EQ(marker.Run(), (Ids{ 40 }));
+  marker.Filter->SetPointId(1, 121);
+  marker.ExpectError("1 of the PointIds (first: 121) name no point of the input, whose ids are 0 "
+                     "to 120");
+}
+
+TEST(MarkHandle, CountsPointIdsOnThroughBlocks)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, MakeSquare());
+  blocks->SetBlock(2, MakeSquare());
+  vtkNew<vtkMarkHandle> filter;
+  filter->SetInputDataObject(blocks);
+  filter->SetPointId(0, 5);
+  filter->SetPointId(1, 121 + 7);
+  filter->Update();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  EXPECT_EQ(Marked(vtkPolyData::SafeDownCast(output->GetBlock(0)), 1), (Ids{ 5 }));
+  EXPECT_EQ(Marked(vtkPolyData::SafeDownCast(output->GetBlock(2)), 1), (Ids{ 7 }));
+  ASSERT_EQ(filter->GetMarkedPointIds()->GetNumberOfTuples(), 2);
+  EXPECT_EQ(filter->GetMarkedPointIds()->GetValue(1), 128);
+}
+
 TEST(MarkHandle, WarnsOfAnEmptyRegion)
 {
   Marker marker;
-  marker.ExpectWarning("there is neither a region function nor a selection on port 1");
+  marker.ExpectWarning("there is neither a region function nor a selection on port 1 nor PointIds");
   EXPECT_EQ(Marked(marker.Filter->GetOutput(), 0).size(), 121u);
   EXPECT_EQ(marker.Filter->GetNumberOfMarkedPoints(), 0);
   marker.Filter->SetRegionSourceToFunction();
   marker.ExpectWarning("there is no region function");
   marker.Filter->SetRegionSourceToSelection();
-  marker.ExpectWarning("there is no selection on port 1");
+  marker.ExpectWarning("there is neither a selection on port 1 nor PointIds");
   vtkNew<vtkSelection> selection;
   marker.Filter->SetSelectionData(selection);
   marker.ExpectWarning("No point is marked for handle 1: the region has no points.");

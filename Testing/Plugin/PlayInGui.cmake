@@ -1,4 +1,5 @@
-# cmake -D... -P PlayInGui.cmake script: plays a recorded test in ParaView.
+# cmake -D... -P PlayInGui.cmake script: plays a recorded test in ParaView. If the test has saved a
+# trace and states (gui_testing.py), they are replayed without the window.
 #
 # ParaView starts with settings of its own, made anew, so that nothing depends
 # on the user or on the run before. Untold, it would open with a welcome dialog
@@ -10,6 +11,8 @@ set(home "${OUTPUT}/${name}-home")
 file(REMOVE_RECURSE "${home}")
 file(WRITE "${home}/ParaView/ParaView${PARAVIEW_VERSION}.ini"
   "[General]\nGeneralSettings.ShowWelcomeDialog=false\n")
+file(REMOVE_RECURSE "${OUTPUT}/${name}")
+set(ENV{PYTHONPATH} "$ENV{PYTHONPATH}:${CMAKE_CURRENT_LIST_DIR}")
 set(ENV{HOME} "${home}")
 set(ENV{XDG_CONFIG_HOME} "${home}")
 
@@ -22,4 +25,15 @@ execute_process(
   RESULT_VARIABLE result)
 if (result)
   message(FATAL_ERROR "ParaView returned ${result}")
+endif ()
+
+if (EXISTS "${OUTPUT}/${name}/replay.json")
+  foreach (saved IN ITEMS trace.py state.py state.pvsm)
+    execute_process(
+      COMMAND "${PVBATCH}" "${CMAKE_CURRENT_LIST_DIR}/replay.py" "${OUTPUT}/${name}" "${saved}"
+      RESULT_VARIABLE result)
+    if (result)
+      message(FATAL_ERROR "${saved} cannot be replayed: ${result}")
+    endif ()
+  endforeach ()
 endif ()

@@ -1,5 +1,8 @@
 """Marks handles by regions, by selections, by queries, in composite data."""
-from paraview import simple
+import runpy
+
+import cartan_testing
+from paraview import simple, smstate
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 
 from plugin_testing import Messages, check, load_plugin, open_bar, output, refresh
@@ -59,21 +62,39 @@ warnings = Messages(mark, "WarningEvent")
 check((handles(mark) == 0).all(), "no region")
 check("neither a region function nor a selection" in warnings.texts[0], warnings.texts)
 
-# A selection of points by their ids.
+# Points by their ids, and by a selection of ids.
+mark = simple.MarkHandle(Input=bar, PointIds=[11, 3, 7])
+check(list(handles(mark).nonzero()[0]) == [3, 7, 11], "point ids")
+refresh(mark)
+check(list(mark.GetProperty("MarkedPointIds")) == [3, 7, 11], "the marked points")
 ids = simple.IDSelectionSource(FieldType="POINT", IDs=[0, 3, 0, 7, 0, 11])
-mark = simple.MarkHandle(Input=bar, Selection=ids)
+mark = simple.MarkHandle(Input=bar, Selection=ids, registrationName="ByIds")
 check(list(handles(mark).nonzero()[0]) == [3, 7, 11], "ids")
+errors = Messages(mark)
+mark.PointIds = [12345]
+mark.UpdatePipeline()
+check(len(errors.texts) == 1 and "12345" in errors.texts[0], "an id of no point")
+mark.PointIds = []
 
-# Find Data: a query for points, and one for cells; the active selection is
-# copied when the filter is made.
-simple.Show(bar, simple.CreateRenderView())
-simple.QuerySelect("pointIsNear([(5, 0.5, 0.5),], 0.51, inputs)", FieldType="POINT", Source=bar)
-mark = simple.MarkHandle(Input=bar)
+# Queries of Find Data: for points, and for cells.
+near = simple.SelectionQuerySource(
+    ElementType="Point Data", QueryString="pointIsNear([(5, 0.5, 0.5),], 0.51, inputs)")
+mark = simple.MarkHandle(Input=bar, Selection=near, registrationName="ByQuery")
 check(marked_x(mark) == (5.0, 5.0), "query for points: %s" % (marked_x(mark),))
-simple.QuerySelect("(id >= 0) & (id < 4)", FieldType="CELL", Source=bar)
-mark = simple.MarkHandle(Input=bar, RegionSource="Selection")
+cells = simple.SelectionQuerySource(ElementType="Cell Data", QueryString="(id >= 0) & (id < 4)")
+mark = simple.MarkHandle(Input=bar, Selection=cells, RegionSource="Selection")
 check(0 < (handles(mark) == 1).sum() <= 12, "query for cells")
-simple.ClearSelection(bar)
+
+# States hold all of them.
+expected = {name: list(handles(simple.FindSource(name))) for name in ("ByIds", "ByQuery")}
+state = cartan_testing.output_path("TestMarkingState.py")
+with open(state, "w", encoding="utf-8") as file:
+    file.write(smstate.get_state())
+simple.ResetSession()
+runpy.run_path(state)
+for name, array in expected.items():
+    check(list(handles(simple.FindSource(name))) == array, name + " in a state")
+bar = simple.FindSource("Bar")
 
 # Blocks of a composite data set are marked at once.
 group = simple.GroupDatasets(Input=[bar, simple.Transform(Input=bar)])

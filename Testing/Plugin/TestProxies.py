@@ -13,9 +13,9 @@ FILTERS = {
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 
-# Not the class's defaults: Mode makes a kind of motion what it is, and the class
-# has no matrix until it is given one.
-PRESET = {"Mode", "Matrix"}
+# Not the class's defaults: Mode makes a kind of motion what it is, the class has no
+# matrix until it is given one, and a link takes the active handle's box to ReferenceBounds.
+PRESET = {"Mode", "Matrix", "ReferenceBounds"}
 
 
 def properties(proxy):

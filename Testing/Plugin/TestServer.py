@@ -33,11 +33,11 @@ def use_filters():
     check_close(bent.GetDataInformation().GetBounds()[4], -2.0, "the lowest point", 1e-4)
     check_close(bent.Motion.ReferenceBounds, bent.ActiveHandleBounds, "the box is the handle's")
 
-    simple.Show(bent, simple.CreateRenderView())
-    simple.QuerySelect("(id < 10)", FieldType="POINT", Source=bent)
-    marked = simple.MarkHandle(Input=bent, HandleArrayName="Other")
+    query = simple.SelectionQuerySource(ElementType="Point Data", QueryString="(id < 10)")
+    marked = simple.MarkHandle(Input=bent, HandleArrayName="Other", Selection=query)
     refresh(marked)
     check(marked.NumberOfMarkedPoints == 10, "a query: %d" % marked.NumberOfMarkedPoints)
+    check(list(marked.GetProperty("MarkedPointIds")) == list(range(10)), "the marked points")
 
     change = simple.VolumeChange(Input=bent, Reference=bar)
     refresh(change)

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pqCartanBehavior.h"
+
+#include "pqStartingValues.h"
+
+#include "pqApplicationCore.h"
+#include "pqObjectBuilder.h"
+#include "pqPipelineSource.h"
+#include "pqServerManagerModel.h"
+#include "pqView.h"
+#include "vtkSMSourceProxy.h"
+
+namespace
+{
+/// Whether a filter is one of this plugin's: they all say how much memory they keep.
+bool IsOurs(pqPipelineSource* source)
+{
+  return source->getProxy()->GetProperty("KeptMemory") != nullptr;
+}
+}
+
+pqCartanBehavior::pqCartanBehavior(QObject* parent)
+  : QObject(parent)
+{
+  this->Refresh.setSingleShot(true);
+  QObject::connect(&this->Refresh, &QTimer::timeout, this, &pqCartanBehavior::refresh);
+}
+
+void pqCartanBehavior::startup()
+{
+  auto* core = pqApplicationCore::instance();
+  auto* model = core->getServerManagerModel();
+  QObject::connect(
+    model, &pqServerManagerModel::dataUpdated, this, &pqCartanBehavior::refreshLater);
+  QObject::connect(model, &pqServerManagerModel::viewAdded, this, &pqCartanBehavior::watchView);
+  for (pqView* view : model->findItems<pqView*>())
+  {
+    this->watchView(view);
+  }
+  QObject::connect(core->getObjectBuilder(), &pqObjectBuilder::filterCreated, this,
+    &pqCartanBehavior::startFilter);
+}
+
+void pqCartanBehavior::shutdown()
+{
+  this->Refresh.stop();
+}
+
+void pqCartanBehavior::watchView(pqView* view)
+{
+  QObject::connect(view, &pqView::updateDataEvent, this, &pqCartanBehavior::refreshLater);
+}
+
+void pqCartanBehavior::refreshLater()
+{
+  this->Refresh.start(0);
+}
+
+void pqCartanBehavior::refresh()
+{
+  for (pqPipelineSource* source :
+    pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>())
+  {
+    if (IsOurs(source) && source->modifiedState() != pqProxy::UNINITIALIZED)
+    {
+      source->getProxy()->UpdatePropertyInformation();
+    }
+  }
+}
+
+void pqCartanBehavior::startFilter(pqPipelineSource* filter)
+{
+  if (IsOurs(filter))
+  {
+    SetStartingValues(filter);
+  }
+}

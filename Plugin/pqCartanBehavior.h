@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class pqCartanBehavior
+ * @brief what the filters do in ParaView's window beyond what XML can say
+ *
+ * - Numbers that filters report (properties with information_only) are read again
+ *   after each update, time steps included. ParaView itself reads them before the
+ *   update that an Apply starts, so that panels would be one Apply behind.
+ * - Filters that are made in the window start with values that can be used at once:
+ *   Mark Handle with the next free id and a box around an end of the surface, or the
+ *   points that are selected; deformations with the handle that was marked last, and
+ *   the box that moves it. Scripts start with the defaults that XML declares.
+ *
+ * ParaView starts it with the plugin.
+ */
+#ifndef pqCartanBehavior_h
+#define pqCartanBehavior_h
+
+#include <QObject>
+#include <QPointer>
+#include <QTimer>
+
+class pqPipelineSource;
+class pqView;
+class vtkSMProxy;
+
+class pqCartanBehavior : public QObject
+{
+  Q_OBJECT
+
+public:
+  explicit pqCartanBehavior(QObject* parent = nullptr);
+  ~pqCartanBehavior() override = default;
+
+  /// Called by ParaView when the plugin is loaded and when the application ends.
+  void startup();
+  void shutdown();
+
+private:
+  void watchView(pqView* view);
+
+  /// Reads the numbers of all filters of this plugin, once for all updates of a turn of
+  /// the event loop.
+  void refreshLater();
+  void refresh();
+
+  void startFilter(pqPipelineSource* filter);
+
+  QTimer Refresh;
+};
+
+#endif

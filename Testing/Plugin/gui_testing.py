@@ -1,0 +1,93 @@
+"""What tests in ParaView's window check in Python.
+
+A test's XML runs lines of Python in the window's shell (executeCommand). check() and its kin print
+what ctest takes for a failure, because an exception there does not stop the test.
+"""
+import json
+import os
+import sys
+
+from paraview import servermanager, simple, smtrace
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import cartan_testing
+
+
+def say(text):
+    """Writes to the output of the process; print() would write to the shell in the window."""
+    os.write(1, (text + "\n").encode())
+
+
+def fail_on_exceptions():
+    """Lets an exception in the shell fail the test; the window would only show it."""
+    sys.excepthook = lambda kind, value, _trace: say(f"TEST FAILED: {kind.__name__}: {value}")
+
+
+fail_on_exceptions()
+
+
+def check(condition, what):
+    """Fails the test with a sentence unless the condition holds."""
+    if not condition:
+        say("TEST FAILED: " + what)
+
+
+def check_close(actual, expected, what, tolerance=1e-6):
+    """Fails the test unless two sequences of numbers agree."""
+    check(len(actual) == len(expected)
+          and all(abs(a - b) <= tolerance for a, b in zip(actual, expected)),
+          f"{what}: {list(actual)}, not {list(expected)}")
+
+
+def points(name):
+    """The points of a source as it is: nothing is updated."""
+    source = simple.FindSource(name)
+    return vtk_to_numpy(servermanager.Fetch(source).GetPoints().GetData()).copy()
+
+
+def shown(name):
+    """The points that the active view draws of a source."""
+    for representation in simple.GetActiveView().Representations:
+        if getattr(representation, "Input", None) == simple.FindSource(name):
+            drawn = representation.SMProxy.GetClientSideObject().GetActiveRepresentation()
+            data = drawn.GetRenderedDataObject(0)
+            while data and data.IsA("vtkMultiBlockDataSet"):
+                data = data.GetBlock(0) if data.GetNumberOfBlocks() else None
+            has_points = data and data.GetNumberOfPoints()
+            return vtk_to_numpy(data.GetPoints().GetData()).copy() if has_points else None
+    return None
+
+
+def start_trace():
+    """As Tools > Start Trace does."""
+    smtrace.start_trace()
+
+
+def save_for_replay(test, name):
+    """Writes trace, states and the surface of the source `name`; PlayInGui.cmake replays them."""
+    trace = smtrace.stop_trace()
+    folder = cartan_testing.output_path(test)
+    os.makedirs(folder, exist_ok=True)
+    surface = points(name)
+    surface.dump(os.path.join(folder, "points.npy"))
+    from paraview import smstate
+    scripts = {"trace.py": trace, "state.py": smstate.get_state()}
+    for file_name, text in scripts.items():
+        with open(os.path.join(folder, file_name), "w", encoding="utf-8") as file:
+            file.write(text)
+    simple.SaveState(os.path.join(folder, "state.pvsm"))
+    with open(os.path.join(folder, "replay.json"), "w", encoding="utf-8") as file:
+        json.dump({"source": name, "data_type": str(surface.dtype)}, file)
+    say(f"saved {len(surface)} points of {name}, a trace of {len(trace.splitlines())} lines")
+
+
+def bounds_of(deformation, handle):
+    """The box of a handle, as the deformation reports it."""
+    rows = list(deformation.GetProperty("HandleBounds"))
+    return next(rows[i + 1:i + 7] for i in range(0, len(rows), 7) if rows[i] == handle)
+
+
+def boxes_in_view():
+    """The boxes that can be dragged in the active view."""
+    return [widget for widget in simple.GetActiveView().GetProperty("HiddenRepresentations")
+            if "Box" in widget.SMProxy.GetXMLName() and widget.Visibility]
