@@ -41,11 +41,15 @@ function (cartan_wrap_python)
     INSTALL_HEADERS     OFF)
 
   # The wrapped classes are in the extension module vtkcartan.vtkCartan; the package
-  # hands them on.
-  set(init "${CMAKE_BINARY_DIR}/${CARTAN_PYTHON_DESTINATION}/vtkcartan/__init__.py")
-  file(CONFIGURE OUTPUT "${init}" CONTENT
-    "\"\"\"Surfaces described, edited and measured by differential quantities.\"\"\"\nfrom .vtkCartan import *\n")
-  install(FILES "${init}" DESTINATION "${CARTAN_PYTHON_DESTINATION}/vtkcartan" COMPONENT python)
+  # hands them on, with functions for arrays.
+  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/Python/vtkcartan/*")
+  list(FILTER sources EXCLUDE REGEX "__pycache__")
+  foreach (source IN LISTS sources)
+    get_filename_component(name "${source}" NAME)
+    configure_file("${source}" "${CMAKE_BINARY_DIR}/${CARTAN_PYTHON_DESTINATION}/vtkcartan/${name}"
+      COPYONLY)
+  endforeach ()
+  install(FILES ${sources} DESTINATION "${CARTAN_PYTHON_DESTINATION}/vtkcartan" COMPONENT python)
 endfunction ()
 
 function (cartan_build_plugin)

@@ -1,0 +1,16 @@
+from typing import Any, Mapping, Sequence
+
+from numpy.typing import ArrayLike
+
+from .arrays import Handles, Measures, Motion
+
+class CartanAccessor:
+    def __init__(self, mesh: Any) -> None: ...
+    def deform(self, handles: Handles, motions: Mapping[int, Motion] | None = None,
+               targets: Mapping[int, ArrayLike] | None = None,
+               method: str = "ShapePreserving", **properties: Any) -> Any: ...
+    def morph(self, others: Any | Sequence[Any], parameter: float,
+              method: str = "DiscreteForms", **properties: Any) -> Any: ...
+    def measure(self, reference: Any) -> Measures: ...
+
+def register() -> bool: ...
