@@ -3,7 +3,10 @@
 # The folders in the install tree, and in the same places in the build tree.
 set(CARTAN_CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/vtkCartan")
 if (VTK_WRAP_PYTHON)
-  vtk_module_python_default_destination(CARTAN_PYTHON_DESTINATION)
+  vtk_module_python_default_destination(destination)
+  set(CARTAN_PYTHON_DESTINATION "${destination}" CACHE STRING
+    "Where the Python package is installed, relative to the prefix")
+  mark_as_advanced(CARTAN_PYTHON_DESTINATION)
 endif ()
 
 # The library. vtk_module_build() enters the folder of vtk.module again and
@@ -60,6 +63,10 @@ function (cartan_build_plugin)
     HIDE_PLUGINS_FROM_CACHE ON)
   paraview_plugin_build(
     PLUGINS              ${plugins}
+    AUTOLOAD             CartanPlugin
+    PLUGINS_FILE_NAME    cartan.plugins.xml
+    PLUGINS_COMPONENT    paraview_plugins
+    TARGET_COMPONENT     paraview_plugins
     RUNTIME_DESTINATION  "${CMAKE_INSTALL_BINDIR}"
     LIBRARY_DESTINATION  "${CMAKE_INSTALL_LIBDIR}"
     LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}")
