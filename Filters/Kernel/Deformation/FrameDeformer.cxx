@@ -109,7 +109,7 @@ void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransf
 }
 
 /// sum over the triangles t of a vertex i and its edges in them of
-/// c_t,ij R_t (p_i - p_j).
+/// c_t,ij (R_t - I) (p_i - p_j).
 Eigen::Vector3d FrameDeformer::TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const
 {
   const TriangleMesh& mesh = *this->Problem.Mesh;
@@ -136,12 +136,15 @@ Eigen::Vector3d FrameDeformer::TriangleSum(int vertex, const Eigen::VectorXd& fr
         edges += this->TriangleWeights(t, c) * (rest.row(vertex) - rest.row(other));
       }
     }
-    sum += scale * (MatrixAt(this->TriangleTransforms, t) * edges.transpose());
+    sum += scale * (MatrixAt(this->TriangleTransforms, t) * edges.transpose()) - edges.transpose();
   }
   return sum;
 }
 
-/// b_i, to which held neighbors and soft constraints add.
+/// b_i, to which held neighbors and soft constraints add. The unknowns are
+/// displacements from the rest, whose edges' part, - (p_i - p_j), is in b: where
+/// nothing turns and nothing held moves, b and the displacements are exactly zero,
+/// however small a part is beside the whole.
 ///
 /// Neutral offset: the target of an edge, R_mean (p_j - p_i), is what its two
 /// ends make of it when each carries the middle of the body under it rigidly,
@@ -173,7 +176,8 @@ Eigen::Vector3d FrameDeformer::RightHandSide(int unknown, const HandleTargets& t
     const double half = 0.5 * edge->Weight;
     if (!isByTriangle)
     {
-      sum += half * ((transform + other) * (point - rest.row(w).transpose()));
+      const Eigen::Vector3d edgeVector = point - rest.row(w).transpose();
+      sum += half * (transform * edgeVector - edgeVector + (other * edgeVector - edgeVector));
     }
     if (offsets)
     {
@@ -181,13 +185,13 @@ Eigen::Vector3d FrameDeformer::RightHandSide(int unknown, const HandleTargets& t
     }
     if (edge->Neighbor >= system.NumberOfUnknowns())
     {
-      sum += edge->Weight * result.Positions.row(w).transpose();
+      sum += edge->Weight * (result.Positions.row(w) - rest.row(w)).transpose();
     }
   }
   if (system.SquaredSoftWeight(unknown) > 0.0)
   {
     sum += 0.5 * system.SquaredSoftWeight(unknown) *
-      HandleTarget(this->Problem, targets, v, system.MovingHandle(unknown));
+      (HandleTarget(this->Problem, targets, v, system.MovingHandle(unknown)) - point);
   }
   return sum;
 }
@@ -213,7 +217,8 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
   const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide);
   for (int i = 0; i < system.NumberOfUnknowns(); ++i)
   {
-    result.Positions.row(system.Vertex(i)) = solution.row(i);
+    const int v = system.Vertex(i);
+    result.Positions.row(v) = this->Problem.Rest->row(v) + solution.row(i);
   }
 }
 
