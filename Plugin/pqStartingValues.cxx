@@ -22,7 +22,7 @@
 
 namespace
 {
-/// What Mark Handle starts with: the last tenth of the surface along its longest side.
+/// What Mark Handle starts with: a tenth of the surface's longest side.
 constexpr double RegionShare = 0.1;
 
 /// A region begins this much outside of the surface, relative to its size, so that the
@@ -83,8 +83,8 @@ vtkSMProxy* Offered(vtkSMProxy* filter, const char* property, const char* name)
   return nullptr;
 }
 
-/// Handles with odd ids start at the upper end of the surface's longest side, those with
-/// even ids at the lower end: one to move, one to keep.
+/// Handles with odd ids start at the lower end of the surface's longest side, those with
+/// even ids at the upper end: one to keep, one to move.
 void PlaceRegion(vtkSMProxy* box, const vtkBoundingBox& surface, int id)
 {
   double low[3];
@@ -92,12 +92,13 @@ void PlaceRegion(vtkSMProxy* box, const vtkBoundingBox& surface, int id)
   surface.GetMinPoint(low);
   surface.GetLengths(lengths);
   const auto longest = std::max_element(lengths, lengths + 3) - lengths;
+  const bool isUpper = id % 2 == 0;
   const double margin = RegionMargin * lengths[longest];
   for (int axis = 0; axis < 3; ++axis)
   {
     const double share = axis == longest ? RegionShare : 1.0;
-    low[axis] += id % 2 ? (1.0 - share) * lengths[axis] : 0.0;
-    low[axis] -= axis == longest && id % 2 ? 0.0 : margin;
+    low[axis] += isUpper ? (1.0 - share) * lengths[axis] : 0.0;
+    low[axis] -= axis == longest && isUpper ? 0.0 : margin;
     lengths[axis] = share * lengths[axis] + (axis == longest ? margin : 2.0 * margin);
   }
   vtkSMPropertyHelper(box, "Position").Set(low, 3);

@@ -7,10 +7,14 @@ import json
 import os
 import sys
 
+import numpy
 from paraview import servermanager, simple, smtrace
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGWriter
 
 import cartan_testing
+from plugin_testing import write
 
 
 def say(text):
@@ -56,6 +60,41 @@ def shown(name):
             has_points = data and data.GetNumberOfPoints()
             return vtk_to_numpy(data.GetPoints().GetData()).copy() if has_points else None
     return None
+
+
+def open_scan(mesh):
+    """A scanned surface, in a file as the demo writes it, opened and seen from the side."""
+    reader = simple.OpenDataFile(write(cartan_testing.read_off(mesh), mesh + ".vtp"),
+                                 registrationName=mesh + ".vtp")
+    simple.Show(reader)
+    view = simple.GetActiveView()
+    view.CameraPosition, view.CameraViewUp = [1, 0, 0], [0, 0, 1]
+    simple.ResetCamera()
+    simple.SetActiveSource(reader)
+
+
+def snapshot(name):
+    """Saves what is on the screen as a picture in the test's output."""
+    frame = cartan_testing.output_path("Screen/Xvfb_screen0")
+    # The X window dump of Xvfb -fbdir: a header of big-endian numbers, a color map, rows of
+    # blue, green, red and a byte without use.
+    with open(frame, "rb") as file:
+        data = file.read()
+    header = numpy.frombuffer(data, ">u4", 25)
+    size, width, height, stride, colors = (int(header[i]) for i in (0, 4, 5, 12, 19))
+    rows = numpy.frombuffer(data, "u1", stride * height, size + 12 * colors)
+    pixels = rows.reshape(height, stride)[:, :4 * width].reshape(height, width, 4)[:, :, 2::-1]
+    window = numpy.argwhere(pixels.any(axis=2)).max(axis=0) + 1  # the rest of the screen is black
+    pixels = pixels[:window[0], :window[1]]
+    height, width = pixels.shape[:2]
+    image = vtkImageData()
+    image.SetDimensions(width, height, 1)
+    image.GetPointData().SetScalars(
+        numpy_to_vtk(numpy.ascontiguousarray(pixels[::-1]).reshape(-1, 3), deep=True))
+    writer = vtkPNGWriter()
+    writer.SetInputData(image)
+    writer.SetFileName(cartan_testing.output_path(name + ".png"))
+    writer.Write()
 
 
 def start_trace():

@@ -55,5 +55,46 @@ class Properties(unittest.TestCase):
         self.assertGreater(count, 20)  # the headers are read at all
 
 
+def proxies(root):
+    """All proxies of a file, those that properties offer too."""
+    for group in root.iter("ProxyGroup"):
+        yield from (child for child in group if "Proxy" in child.tag)
+
+
+class Panels(unittest.TestCase):
+    """What users see of filters and properties."""
+
+    def test_every_property_is_documented(self):
+        count = 0
+        for path in sorted((ROOT / "Plugin").glob("*.xml")):
+            for proxy in proxies(xml.etree.ElementTree.parse(path)):
+                for element in proxy:
+                    if not element.tag.endswith("Property") or element.get("is_internal") == "1":
+                        continue
+                    count += 1
+                    name = "%s: %s.%s" % (path.name, proxy.get("name"), element.get("name"))
+                    text = " ".join((element.findtext("Documentation") or "").split())
+                    self.assertGreater(len(text), 10, name + " is not documented")
+                    self.assertTrue(text.endswith("."), name + ": " + text)
+        self.assertGreater(count, 100)
+
+    def test_every_filter_has_an_icon(self):
+        plugin = ROOT / "Plugin"
+        listed = {file.text for file in
+                  xml.etree.ElementTree.parse(plugin / "Icons.qrc").iter("file")}
+        used = set()
+        for path in sorted(plugin.glob("*.xml")):
+            for proxy in proxies(xml.etree.ElementTree.parse(path)):
+                for menu in proxy.iter("ShowInMenu"):
+                    icon = menu.get("icon", "")
+                    self.assertEqual(icon, ":/Cartan/Icons/%s.svg" % proxy.get("name"), path.name)
+                    used.add(icon[len(":/Cartan/"):])
+        self.assertEqual(used, listed)
+        for name in listed:
+            root = xml.etree.ElementTree.parse(plugin / name).getroot()
+            self.assertEqual(root.get("viewBox"), "0 0 24 24", name)
+            self.assertGreater(len(root), 1, name)
+
+
 if __name__ == "__main__":
     unittest.main()
