@@ -26,5 +26,6 @@ else ()
     find_package(ParaView 5.11 QUIET COMPONENTS RemotingCore)
   endif ()
 endif ()
-find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_components})
+find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_components}
+  OPTIONAL_COMPONENTS PythonInterpreter) # the plugin's, for traces
 message(STATUS "VTK ${VTK_VERSION} in ${VTK_DIR}; ParaView plugin: ${CARTAN_BUILD_PLUGIN}")

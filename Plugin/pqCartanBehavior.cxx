@@ -2,6 +2,14 @@
 #include "pqCartanBehavior.h"
 
 #include "pqStartingValues.h"
+#ifdef CARTAN_HAVE_PYTHON
+#include "pqTraceFilter.h"
+#else
+/// Without Python there are no traces.
+class pqTraceFilter
+{
+};
+#endif
 
 #include "pqApplicationCore.h"
 #include "pqObjectBuilder.h"
@@ -26,8 +34,11 @@ pqCartanBehavior::pqCartanBehavior(QObject* parent)
   QObject::connect(&this->Refresh, &QTimer::timeout, this, &pqCartanBehavior::refresh);
 }
 
+pqCartanBehavior::~pqCartanBehavior() = default;
+
 void pqCartanBehavior::startup()
 {
+  this->TraceFilter = std::make_unique<pqTraceFilter>();
   auto* core = pqApplicationCore::instance();
   auto* model = core->getServerManagerModel();
   QObject::connect(
@@ -44,6 +55,7 @@ void pqCartanBehavior::startup()
 void pqCartanBehavior::shutdown()
 {
   this->Refresh.stop();
+  this->TraceFilter.reset();
 }
 
 void pqCartanBehavior::watchView(pqView* view)

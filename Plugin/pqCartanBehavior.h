@@ -17,12 +17,13 @@
 #define pqCartanBehavior_h
 
 #include <QObject>
-#include <QPointer>
 #include <QTimer>
 
+#include <memory>
+
 class pqPipelineSource;
+class pqTraceFilter;
 class pqView;
-class vtkSMProxy;
 
 class pqCartanBehavior : public QObject
 {
@@ -30,7 +31,7 @@ class pqCartanBehavior : public QObject
 
 public:
   explicit pqCartanBehavior(QObject* parent = nullptr);
-  ~pqCartanBehavior() override = default;
+  ~pqCartanBehavior() override;
 
   /// Called by ParaView when the plugin is loaded and when the application ends.
   void startup();
@@ -47,6 +48,7 @@ private:
   void startFilter(pqPipelineSource* filter);
 
   QTimer Refresh;
+  std::unique_ptr<pqTraceFilter> TraceFilter;
 };
 
 #endif
