@@ -18,12 +18,21 @@ namespace
 std::unique_ptr<cartan::VolumeModel> NewModel(
   const cartan::HandleProblem& problem, const cartan::ExecutionContext& context)
 {
-  const cartan::RayTree tree(problem.GetWhole()->GetTriangles(), *problem.Rest);
+  const cartan::RayTree tree(problem.Mesh->GetTriangles(), *problem.Rest);
   return std::make_unique<cartan::VolumeModel>(cartan::MeasureVolumeModel(
-    *problem.GetWhole(), *problem.Rest,
+    *problem.Mesh, *problem.Rest,
     [&tree](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
     { return tree.FirstHit(from, direction); },
     context));
+}
+
+/// Of the mesh that is solved on: which slivers it is without depends on the handles.
+cartan::ContentKey KeyOfModel(const cartan::HandleProblem& problem, cartan::ContentKey surface)
+{
+  const cartan::Triangles& triangles = problem.Mesh->GetTriangles();
+  return problem.Whole
+    ? surface.AddBytes(triangles.data(), static_cast<std::size_t>(triangles.size()) * sizeof(int))
+    : surface;
 }
 
 /// The part of the volume under each vertex; NaN where none is enclosed.
@@ -93,14 +102,18 @@ void vtkFrameDeformation::CorrectVolume(cartan::FrameDeformer& deformer, cartan:
     "the enumerations agree");
   deformer.SetVolumeCorrection(static_cast<cartan::VolumeCorrection>(this->VolumeCorrection));
   deformer.SetCloseVolume(this->CloseVolume);
-  if (this->VolumeCorrection != NO_CORRECTION || this->CloseVolume || this->GenerateVolumeArrays)
+  if (this->UsesVolumeModel())
   {
     const cartan::HandleProblem& problem = deformer.GetProblem();
-    const auto model = run.Keep<cartan::VolumeModel>(
-      run.SurfaceKey(), [&] { return NewModel(problem, run.Context().Part(0.6, 0.8)); });
-    run.Warn(model->Warning);
+    const auto model = run.Keep<cartan::VolumeModel>(KeyOfModel(problem, run.SurfaceKey()),
+      [&] { return NewModel(problem, run.Context().Part(0.6, 0.8)); });
     deformer.SetVolumeModel(model);
   }
+}
+
+bool vtkFrameDeformation::UsesVolumeModel() const
+{
+  return this->VolumeCorrection != NO_CORRECTION || this->CloseVolume || this->GenerateVolumeArrays;
 }
 
 void vtkFrameDeformation::AddVolumeArrays(const cartan::FrameDeformer& deformer,
@@ -109,6 +122,10 @@ void vtkFrameDeformation::AddVolumeArrays(const cartan::FrameDeformer& deformer,
   const cartan::HandleProblem& problem = deformer.GetProblem();
   const Eigen::Index size = problem.Rest->rows();
   vtkPolyData* output = run.Output();
+  if (this->UsesVolumeModel())
+  {
+    run.Warn(deformer.GetVolumeModel()->Warning);
+  }
   if (this->GenerateVolumeArrays)
   {
     const cartan::VolumeModel& model = *deformer.GetVolumeModel();
@@ -118,6 +135,7 @@ void vtkFrameDeformation::AddVolumeArrays(const cartan::FrameDeformer& deformer,
     if (!model.IsEmpty())
     {
       depth = model.LocalDepth;
+      cartan::MeansForRiders(problem.Riders, depth);
       const auto volumes = run.Keep<cartan::LocalVolumes>(run.SurfaceKey(),
         [&]
         {

@@ -150,6 +150,7 @@ protected:
 
 private:
   void CorrectVolume(cartan::FrameDeformer& deformer, cartan::FilterRun& run);
+  bool UsesVolumeModel() const;
   void AddVolumeArrays(const cartan::FrameDeformer& deformer, const cartan::DeformedSurface& result,
     cartan::FilterRun& run);
 

@@ -362,6 +362,69 @@ TEST(SliverRemoval, ComponentsKeepTheirNumbers)
   }
 }
 
+TEST(SliverRemoval, CapsOfHandlesAreNotFelt)
+{
+  // Of the moving handle's edge next to the free vertices.
+  const Shape clean = Tube();
+  const HandleProblem problem = ProblemOf(clean);
+  int triangle = -1;
+  int first = -1;
+  for (int t = 0; t < clean.Faces.rows(); ++t)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      const auto handle = [&](int corner) { return problem.Handle[clean.Faces(t, corner % 3)]; };
+      if (handle(i) == 2 && handle(i + 1) == 2 && handle(i + 2) == 0)
+      {
+        triangle = t;
+        first = i;
+      }
+    }
+  }
+  ASSERT_GE(triangle, 0);
+  Shape spoiled = clean;
+  Eigen::Vector3d weights = Eigen::Vector3d::Constant(0.4999);
+  weights[(first + 2) % 3] = 0.0002;
+  const int added = SplitTriangle(spoiled, triangle, weights);
+  HandleProblem held = ProblemOf(spoiled);
+  held.Handle[added] = 2;
+  const HandleProblem without = cartan::WithoutSlivers(held);
+  ASSERT_EQ(without.Riders.size(), 1u);
+  for (const auto& [name, make] : deformers::All())
+  {
+    const Points found = Deform(make, without);
+    const Points difference = found.topRows(added) - Deform(make, problem);
+    EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-9) << name;
+    const Eigen::Vector3d rest = spoiled.Positions.row(added);
+    EXPECT_LT((found.row(added).transpose() - Bend().Motions[0].Linear * rest).norm(), 1e-12)
+      << name;
+  }
+}
+
+TEST(SliverRemoval, OrderOfVerticesDoesNotMatter)
+{
+  // Two caps in one triangle: flipping the older one first would leave another mesh.
+  Shape caps = Tube();
+  const int middle = MiddleTriangle(caps);
+  SplitTriangle(caps, middle, { 0.499, 0.4992, 0.0018 });
+  SplitTriangle(caps, static_cast<int>(caps.Faces.rows()) - 2, { 0.498, 0.4992, 0.0028 });
+  // The first vertex, which stays, is still the first.
+  const int last = caps.NumberOfVertices() - 1;
+  Shape reversed = caps;
+  reversed.Positions.bottomRows(last) = caps.Positions.bottomRows(last).colwise().reverse().eval();
+  reversed.Faces = caps.Faces.unaryExpr([last](int v) { return v > 0 ? last + 1 - v : 0; });
+  for (const auto& [name, make] : deformers::All())
+  {
+    if (name != "SmoothedRotations") // fits one vertex after the other
+    {
+      const Points found = Deform(make, cartan::WithoutSlivers(ProblemOf(caps)));
+      const Points other = Deform(make, cartan::WithoutSlivers(ProblemOf(reversed)));
+      const auto difference = found.bottomRows(last) - other.bottomRows(last).colwise().reverse();
+      EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-9) << name;
+    }
+  }
+}
+
 TEST(SliverRemoval, VolumesAreClosedWithoutThem)
 {
   Shape bar = shapes::Bar(3, 3, 12, { 0.6, 0.6, 2.0 });
@@ -372,7 +435,7 @@ TEST(SliverRemoval, VolumesAreClosedWithoutThem)
   ASSERT_EQ(problem.Riders.size(), 1u);
   cartan::RotationInvariantDeformer deformer(problem);
   auto model = std::make_shared<cartan::VolumeModel>();
-  const auto before = cartan::MeasureComponents(*problem.Whole, *problem.Rest);
+  const auto before = cartan::MeasureComponents(*problem.Mesh, *problem.Rest);
   model->LocalDepth.setConstant(problem.Rest->rows(), 0.6);
   model->EnclosesVolume = { 1 };
   model->Volumes = { before[0].Volume };
@@ -380,7 +443,11 @@ TEST(SliverRemoval, VolumesAreClosedWithoutThem)
   deformer.SetCloseVolume(true);
   DeformedSurface result;
   deformer.Deform(Bend(), false, result, {});
-  const auto after = cartan::MeasureComponents(*problem.Whole, result.Positions);
+  const auto after = cartan::MeasureComponents(*problem.Mesh, result.Positions);
   EXPECT_NEAR(after[0].Volume / before[0].Volume, 1.0, 1e-9);
+  // The sliver adds what its tetrahedron changes by.
+  const auto wholeBefore = cartan::MeasureComponents(*problem.Whole, *problem.Rest);
+  const auto wholeAfter = cartan::MeasureComponents(*problem.Whole, result.Positions);
+  EXPECT_NEAR(wholeAfter[0].Volume / wholeBefore[0].Volume, 1.0, 1e-6);
 }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/FrameDeformer.h"
 
-#include "Measure/ComponentVolumes.h"
 #include "Measure/VolumeClosing.h"
 
 #include <cmath>
@@ -251,25 +250,6 @@ void FrameDeformer::ScaleFrames(
   this->SolvePositions(targets, scaled, result, context);
 }
 
-/// The volumes at rest without those of the slivers at these positions.
-std::vector<double> FrameDeformer::VolumesWithoutSlivers(const Points& positions) const
-{
-  std::vector<double> volumes = this->Model->Volumes;
-  if (this->Problem.Whole)
-  {
-    DeformedSurface whole;
-    whole.Positions = positions;
-    CarryRiders(this->Problem.Riders, *this->Problem.Rest, whole);
-    const auto all = MeasureComponents(*this->Problem.Whole, whole.Positions);
-    const auto without = MeasureComponents(*this->Problem.Mesh, positions);
-    for (std::size_t c = 0; c < volumes.size(); ++c)
-    {
-      volumes[c] -= all[c].Volume - without[c].Volume;
-    }
-  }
-  return volumes;
-}
-
 void FrameDeformer::CloseVolumes(Points& positions)
 {
   const HandleLaplacian& system = *this->PositionSystem;
@@ -288,15 +268,8 @@ void FrameDeformer::CloseVolumes(Points& positions)
     }
     return direction;
   };
-  // Slivers are not in the mesh, but enclose volume: what is to be closed is the
-  // rest of the whole, which changes by little when the rest has moved.
-  const int rounds = this->Problem.Whole ? 3 : 1;
-  IdSample notClosed;
-  for (int round = 0; round < rounds; ++round)
-  {
-    notClosed = cartan::CloseVolumes(*this->Problem.Mesh, this->Model->EnclosesVolume,
-      this->VolumesWithoutSlivers(positions), solve, positions);
-  }
+  const IdSample notClosed = cartan::CloseVolumes(
+    *this->Problem.Mesh, this->Model->EnclosesVolume, this->Model->Volumes, solve, positions);
   if (!notClosed.IsEmpty())
   {
     this->Warning += (this->Warning.empty() ? "" : " ");

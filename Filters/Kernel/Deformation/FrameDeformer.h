@@ -38,8 +38,9 @@ public:
   void SetVolumeCorrection(VolumeCorrection correction) { this->Correction = correction; }
   void SetCloseVolume(bool close) { this->Close = close; }
 
-  /// Needed for any volume correction and for closing; empty where there is
-  /// none. Has no effect on components that enclose no volume.
+  /// Of HandleProblem::Mesh, without slivers. Needed for any volume correction and
+  /// for closing; empty where there is none. Has no effect on components that enclose
+  /// no volume.
   void SetVolumeModel(std::shared_ptr<const VolumeModel> model)
   {
     this->RestHeights.resize(model == this->Model ? this->RestHeights.size() : 0);
@@ -110,7 +111,6 @@ private:
   Eigen::Vector3d TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const;
   void ScaleFrames(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
-  std::vector<double> VolumesWithoutSlivers(const Points& positions) const;
   void CloseVolumes(Points& positions);
 
   VolumeCorrection Correction = VolumeCorrection::None;

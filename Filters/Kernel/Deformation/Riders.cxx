@@ -52,18 +52,8 @@ void CarryRiders(const std::vector<Rider>& riders, const Points& rest, DeformedS
       place += rider->Weights[i] * (positions.row(corner) - rest.row(corner)).transpose();
     }
     positions.row(rider->Vertex) = place.transpose();
-    const auto mean = [&](auto& values)
-    {
-      if (values.rows() > 0)
-      {
-        values.row(rider->Vertex) = (rider->Weights[0] * values.row(rider->Corners[0]) +
-          rider->Weights[1] * values.row(rider->Corners[1]) +
-          rider->Weights[2] * values.row(rider->Corners[2]))
-                                      .eval();
-      }
-    };
-    mean(result.Transforms);
-    mean(result.FrameScale);
   }
+  MeansForRiders(riders, result.Transforms);
+  MeansForRiders(riders, result.FrameScale);
 }
 }

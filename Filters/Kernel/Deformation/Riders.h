@@ -27,4 +27,22 @@ Rider MakeRider(const Points& points, int vertex, const std::array<int, 3>& corn
 /// they are when the triangle did not move. Writes Positions, and Transforms and
 /// FrameScale where those are filled.
 void CarryRiders(const std::vector<Rider>& riders, const Points& rest, DeformedSurface& result);
+
+/// Gives riders the weighted means of the values, a row per vertex, at their corners.
+/// Nothing where there are no values.
+template <typename Values>
+void MeansForRiders(const std::vector<Rider>& riders, Values& values)
+{
+  if (values.rows() == 0)
+  {
+    return;
+  }
+  for (auto rider = riders.rbegin(); rider != riders.rend(); ++rider)
+  {
+    const auto& [a, b, c] = rider->Corners;
+    const Eigen::Vector3d& weights = rider->Weights;
+    values.row(rider->Vertex) =
+      (weights[0] * values.row(a) + weights[1] * values.row(b) + weights[2] * values.row(c)).eval();
+  }
+}
 }

@@ -1,29 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/SliverRemoval.h"
 
+#include "Deformation/Slivers.h"
 #include "Mesh/EdgeFlips.h"
 #include "Mesh/TriangleShape.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace cartan
 {
 namespace
 {
-/// A cap is lower than this part of its long edge. At this height the weights'
-/// error is as large as the change that any point added to the mesh makes.
-constexpr double LargestCap = 0.05;
-
-/// A needle's short edge in parts of the longest of each of its triangles.
-constexpr double ShortEdge = 1e-3;
-
-/// The same in parts of the longest edge at either of its ends: what lies between
-/// such vertices is smaller than what rounding leaves of a large system.
-constexpr double TinyEdge = 1e-5;
-
 /// Of twice the area in parts of the longest edge squared: what can carry a rider.
 constexpr double SmallestCarrier = 1e-2;
 
@@ -56,6 +45,7 @@ public:
     : Mesh(problem.Mesh)
     , Rest(*problem.Rest)
     , Handle(problem.Handle)
+    , IsSoft(problem.SoftWeights.size() > 0)
     , IsFirst(Mesh->NumberOfComponents() > 0 ? problem.Handle.size() : 0, 0)
   {
     std::vector<char> isSeen(this->Mesh->NumberOfComponents(), 0);
@@ -70,27 +60,27 @@ public:
     }
   }
 
-  /// Whether something has changed.
+  /// Whether something has changed. Vertices that split a triangle go before anything
+  /// else: the triangle is there again then, whatever lies beside it.
   bool Pass()
   {
-    const int count = this->Mesh->NumberOfVertices();
-    this->IsLocked.assign(count, 0);
+    this->IsLocked.assign(this->Mesh->NumberOfVertices(), 0);
     this->Changed = this->Mesh->GetTriangles();
     this->HasChanged = false;
-    this->MeasureRings();
-    for (int v = 0; v < count; ++v)
+    const std::vector<Sliver> slivers = FindSlivers(*this->Mesh, this->Rest);
+    for (const Sliver& sliver : slivers)
     {
-      for (int d = this->Mesh->RingBegin(v); d < this->Mesh->RingEnd(v); ++d)
+      if (sliver.IsCap && !this->IsRingLocked(sliver.Vertex))
       {
-        if (this->IsCap(v, d))
-        {
-          this->TakeOutCap(v, d);
-        }
-        else if (v < this->Mesh->Neighbor(d) && this->IsShort(v, d))
-        {
-          this->Collapse(v, d);
-        }
+        this->RideInTriangle(sliver.Vertex, sliver.Edge);
       }
+    }
+    const bool isDone = this->HasChanged;
+    for (std::size_t i = 0; i < slivers.size() && !isDone; ++i)
+    {
+      const Sliver& sliver = slivers[i];
+      sliver.IsCap ? this->TakeOutCap(sliver.Vertex, sliver.Edge)
+                   : this->Collapse(sliver.Vertex, sliver.Edge);
     }
     if (this->HasChanged)
     {
@@ -105,58 +95,9 @@ public:
 private:
   Eigen::Vector3d At(int v) const { return this->Rest.row(v); }
 
-  void MeasureRings()
-  {
-    this->LongestAt.assign(this->Mesh->NumberOfVertices(), 0.0);
-    for (int v = 0; v < this->Mesh->NumberOfVertices(); ++v)
-    {
-      for (int d = this->Mesh->RingBegin(v); d < this->Mesh->RingEnd(v); ++d)
-      {
-        this->LongestAt[v] = std::max(
-          this->LongestAt[v], (this->At(this->Mesh->Neighbor(d)) - this->At(v)).squaredNorm());
-      }
-    }
-  }
-
   /// The edge across from the origin of d in its left triangle, seen from outside
   /// of that: from the triangle's third vertex to its second.
   int Across(int d) const { return this->Mesh->Next(this->Mesh->Twin(this->Mesh->Next(d))); }
-
-  /// Whether v is low over the edge across from it in the triangle on the left of d.
-  bool IsCap(int v, int d) const
-  {
-    const int next = this->Mesh->NextAround(v, d);
-    if (next < 0)
-    {
-      return false;
-    }
-    const Eigen::Vector3d apex = this->At(v);
-    const Eigen::Vector3d a = this->At(this->Mesh->Neighbor(d));
-    const Eigen::Vector3d b = this->At(this->Mesh->Neighbor(next));
-    const double squared = (b - a).squaredNorm();
-    const double along = (apex - a).dot(b - a);
-    // Nearer to an end than it is high, it is a needle's.
-    return (a - apex).cross(b - apex).squaredNorm() < LargestCap * LargestCap * squared * squared &&
-      along > ShortEdge * squared && along < (1.0 - ShortEdge) * squared;
-  }
-
-  bool IsShort(int v, int d) const
-  {
-    const int w = this->Mesh->Neighbor(d);
-    const double squared = (this->At(w) - this->At(v)).squaredNorm();
-    double triangles = std::numeric_limits<double>::infinity();
-    for (const int side : { d, this->Mesh->Twin(d) })
-    {
-      const int apex = this->Mesh->Opposite(side);
-      if (apex >= 0)
-      {
-        triangles =
-          std::min(triangles, LongestEdgeSquared(this->At(v), this->At(w), this->At(apex)));
-      }
-    }
-    return squared < ShortEdge * ShortEdge * triangles ||
-      squared < TinyEdge * TinyEdge * std::max(this->LongestAt[v], this->LongestAt[w]);
-  }
 
   bool MayGo(int v) const { return this->Handle[v] == 0 && !this->IsFirst[v]; }
 
@@ -197,26 +138,38 @@ private:
   void TakeOutCap(int v, int d)
   {
     const int across = this->Across(d);
-    if (!this->IsRingLocked(v) && !this->RideInTriangle(v))
+    if (this->IsRingLocked(v))
     {
-      if (this->Mesh->LeftTriangle(across) < 0)
-      {
-        this->LeaveOut(v, d);
-      }
-      else
-      {
-        this->Flip(v, d, this->Mesh->Opposite(across));
-      }
+      return;
+    }
+    if (this->Mesh->LeftTriangle(across) < 0)
+    {
+      this->LeaveOut(v, d);
+    }
+    else
+    {
+      this->Flip(v, d, this->Mesh->Opposite(across));
     }
   }
 
-  /// The three triangles around v become one, which carries it.
-  bool RideInTriangle(int v)
+  /// Whether a cap's low vertex is held where its long edge is held anyway.
+  bool IsHeldByEdge(int v, int d) const
+  {
+    const int a = this->Mesh->Neighbor(d);
+    const int b = this->Mesh->Neighbor(this->Mesh->NextAround(v, d));
+    return !this->IsSoft && !this->IsFirst[v] && this->Handle[v] == this->Handle[a] &&
+      this->Handle[v] == this->Handle[b];
+  }
+
+  /// The three triangles around v, one of which is a cap on the left of d, become one,
+  /// which carries it.
+  void RideInTriangle(int v, int d)
   {
     const int begin = this->Mesh->RingBegin(v);
-    if (this->Mesh->Valence(v) != 3 || this->Mesh->IsBoundary(v) || !this->MayGo(v))
+    if (this->Mesh->Valence(v) != 3 || this->Mesh->IsBoundary(v) ||
+      !(this->MayGo(v) || this->IsHeldByEdge(v, d)))
     {
-      return false;
+      return;
     }
     std::array<int, 3> corners;
     for (int i = 0; i < 3; ++i)
@@ -226,19 +179,18 @@ private:
       if (this->Mesh->Opposite(this->Across(begin + i)) ==
         this->Mesh->Neighbor(begin + (i + 2) % 3))
       {
-        return false;
+        return;
       }
     }
     if (!this->CanCarry(corners))
     {
-      return false;
+      return;
     }
     this->Riders.push_back(MakeRider(this->Rest, v, corners));
     this->Changed.row(this->Mesh->LeftTriangle(begin)) << corners[0], corners[1], corners[2];
     this->Remove(this->Mesh->LeftTriangle(begin + 1));
     this->Remove(this->Mesh->LeftTriangle(begin + 2));
     this->LockRing(v);
-    return true;
   }
 
   /// A cap whose long edge is on the border: its other edges are the border then.
@@ -401,8 +353,8 @@ private:
   std::shared_ptr<const TriangleMesh> Mesh;
   const Points& Rest;
   const std::vector<int>& Handle;
-  std::vector<char> IsFirst;     // of a component, which gives it its number
-  std::vector<double> LongestAt; // squared length of the longest edge at a vertex
+  bool IsSoft;
+  std::vector<char> IsFirst; // of a component, which gives it its number
   std::vector<char> IsLocked;
   Triangles Changed; // -1 where one goes
   bool HasChanged = false;

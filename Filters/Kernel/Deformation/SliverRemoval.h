@@ -6,12 +6,7 @@
 
 namespace cartan
 {
-/// The problem on a mesh without slivers, with the same vertices. Slivers are
-/// triangles that discretize nothing and only break the numbers: *caps*, a vertex
-/// lower over the opposite edge than 5 % of it, give cotangent weights of the
-/// inverse of that height with both signs, and *needles*, an edge shorter than
-/// .1 % of the longest of each of its triangles, or than 1e-5 of the longest edge
-/// at one of its ends, weights of that ratio.
+/// The problem on a mesh without slivers (see FindSlivers), with the same vertices.
 ///
 /// A free vertex inside three triangles one of which is a cap, and a free end of
 /// a needle's edge, are taken out of the mesh: they become Riders on a triangle
@@ -21,7 +16,11 @@ namespace cartan
 /// Construction of Intrinsic Delaunay Triangulations with Applications to Digital
 /// Geometry Processing, 2006), but where that would change the shape: the
 /// triangles' normals, of caps higher than 1 %, are more than 30 degrees apart.
-/// Vertices of handles stay in the mesh, and the components keep their numbers.
+/// Vertices of handles stay in the mesh, but for that of a cap between two of the same
+/// handle, which hold it anyway; with soft weights all. The components keep their
+/// numbers. What
+/// splits a triangle goes first, the rest by length: the order of the vertices
+/// decides only between slivers of equal length that touch each other.
 ///
 /// The problem as it is, and the same objects, when there is no sliver. O(#V + #T),
 /// and again as often as slivers hang on slivers. Throws Error(Aborted).

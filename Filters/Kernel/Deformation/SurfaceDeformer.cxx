@@ -1,8 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/SurfaceDeformer.h"
 
+#include "Deformation/HandleLaplacian.h"
+
 namespace cartan
 {
+namespace
+{
+/// Handles put their vertices where they are to go, riders too.
+void PlaceRidersOfHandles(
+  const HandleProblem& problem, const HandleTargets& targets, DeformedSurface& result)
+{
+  for (const Rider& rider : problem.Riders)
+  {
+    const int id = problem.Handle[rider.Vertex];
+    if (id > 0 && problem.ConstrainPositions)
+    {
+      const auto found = std::lower_bound(problem.Moving.begin(), problem.Moving.end(), id);
+      const bool isMoving = found != problem.Moving.end() && *found == id;
+      const int handle = isMoving ? static_cast<int>(found - problem.Moving.begin()) : -1;
+      result.Positions.row(rider.Vertex) =
+        HandleTarget(problem, targets, rider.Vertex, handle).transpose();
+    }
+  }
+}
+}
+
 void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
@@ -18,5 +41,6 @@ void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   }
   this->Common->Restore(wantTransforms, result);
   CarryRiders(this->Problem.Riders, *this->Problem.Rest, result);
+  PlaceRidersOfHandles(this->Problem, targets, result);
 }
 }
