@@ -103,7 +103,7 @@ void DiscreteFormsMorph::InterpolateRings(
         (positions.row(mesh.Neighbor(d)) - positions.row(v)).transpose();
     }
   }
-  this->KeyRings = KeyInterpolation(this->Parameters, std::move(rings));
+  this->KeyRings = KeyInterpolation(this->Parameters, std::move(rings), 3);
 }
 
 void DiscreteFormsMorph::InterpolateTransitions(const std::vector<Matrices>& frames)
@@ -130,7 +130,7 @@ void DiscreteFormsMorph::InterpolateTransitions(const std::vector<Matrices>& fra
         mean.transpose() * MatrixAt(frames[k], i).transpose() * MatrixAt(frames[k], j));
     }
   }
-  this->FromMean = KeyInterpolation(this->Parameters, std::move(fromMean));
+  this->FromMean = KeyInterpolation(this->Parameters, std::move(fromMean), 3);
 }
 
 std::size_t DiscreteFormsMorph::GetBytes() const

@@ -188,6 +188,7 @@ void IsometricMorph::SetUpStitching(const ExecutionContext& context)
       this->IsHeld[this->Topology.Corners(t, corner)] = 0;
     }
   }
+  this->IsUnstitched = this->IsHeld;
   for (const DualForest::Step& step : this->Forest.Steps)
   {
     if (step.Parent < 0)
@@ -227,7 +228,7 @@ std::size_t IsometricMorph::GetBytes() const
   return this->Topology.GetBytes() + this->KeyLengths.GetBytes() + this->KeyAngles.GetBytes() +
     this->Forest.GetBytes() + this->Stitching.GetBytes() +
     (this->Averaging ? this->Averaging->GetBytes() : 0) + this->Known.GetBytes() +
-    BytesOf(this->IsHeld);
+    TotalBytes(this->IsHeld, this->IsUnstitched);
 }
 
 Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
@@ -258,8 +259,9 @@ Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
   if (this->StitchedComponents > 0)
   {
     this->Stitch(layouts, frames, points);
-    PolishLengths(this->Topology.Edges, lengths, this->IsHeld, this->Options.LengthPolish, points,
-      context.Part(0.7, 1.0));
+    // Nothing else is held: where the tree begins depends on the order of triangles.
+    PolishLengths(this->Topology.Edges, lengths, this->IsUnstitched, this->Options.LengthPolish,
+      points, context.Part(0.7, 1.0));
   }
   return points;
 }

@@ -123,7 +123,8 @@ private:
   int StitchedComponents = 0;
 
   // Only where something is stitched.
-  std::vector<char> IsHeld; // #V, the vertices that Stitch does not move
+  std::vector<char> IsHeld;       // #V, the vertices that Stitch does not move
+  std::vector<char> IsUnstitched; // vertices of components whose dual graph is a tree
   TriangleStitching Stitching;
   std::unique_ptr<RotationAveraging> Averaging;
   FrameMemory Known;

@@ -2,6 +2,7 @@
 #include "Morph/MorphVolume.h"
 
 #include "Differential/Laplacian.h"
+#include "Measure/Areas.h"
 #include "Measure/ComponentVolumes.h"
 #include "Measure/VolumeClosing.h"
 
@@ -51,11 +52,23 @@ std::string MorphVolume::Close(double t, Points& positions) const
   const TriangleMesh& mesh = *this->Mesh;
   const Eigen::VectorXd interpolated = this->Volumes.Evaluate(t);
   const std::vector<double> volumes(interpolated.data(), interpolated.data() + interpolated.size());
-  const auto solve = [this](const Points& gradient)
+  const Eigen::VectorXd areas = BarycentricAreas(mesh, TriangleAreas(mesh, positions));
+  const auto solve = [&](const Points& gradient)
   {
     Field solution = Field::Zero(gradient.rows(), 3);
     this->Laplacian.Solve(gradient, solution);
-    return Points(solution);
+    // The grounded vertex, the first of its component, must not decide where the
+    // component goes: its center stays.
+    Points direction = solution;
+    const Points centers = ComponentCenters(mesh, direction, areas);
+    for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+    {
+      if (mesh.IsUsed(v) && this->TakesPart[mesh.Component(v)])
+      {
+        direction.row(v) -= centers.row(mesh.Component(v));
+      }
+    }
+    return direction;
   };
   const IdSample notClosed = CloseVolumes(mesh, this->TakesPart, volumes, solve, positions);
   return notClosed.IsEmpty() ? std::string()

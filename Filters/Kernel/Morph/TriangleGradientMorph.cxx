@@ -238,8 +238,8 @@ TriangleGradientMorph::TriangleGradientMorph(const KeyFrames& keys, const Execut
     corners.col(k) = Eigen::Map<const Eigen::VectorXd>(local.data(), local.size());
     context.Report((k + 1.0) / (numberOfKeys + 1.0));
   }
-  this->RotationVectors = KeyInterpolation(keys.Parameters, std::move(vectors));
-  this->Corners = KeyInterpolation(keys.Parameters, std::move(corners));
+  this->RotationVectors = KeyInterpolation(keys.Parameters, std::move(vectors), 3);
+  this->Corners = KeyInterpolation(keys.Parameters, std::move(corners), 3);
   this->Stitching = TriangleStitching(mesh.GetTriangles(), std::move(weights), mesh.Grounded(),
     context.Part(numberOfKeys / (numberOfKeys + 1.0), 1.0));
 }
