@@ -7,6 +7,8 @@
 
 #include "vtkObjectFactory.h"
 
+#include <cmath>
+
 vtkStandardNewMacro(vtkAsRigidAsPossibleDeformation);
 
 void vtkAsRigidAsPossibleDeformation::PrintSelf(ostream& os, vtkIndent indent)
@@ -69,6 +71,11 @@ cartan::DeformationMethod vtkAsRigidAsPossibleDeformation::NewMethod(
     this->InitialEnergy = rigid->GetEnergies().front();
     this->FinalEnergy = rigid->GetEnergies().back();
     this->Converged = rigid->HasConverged();
+    if (!std::isfinite(this->FinalEnergy))
+    {
+      throw cartan::Error(cartan::ErrorCode::BadInput,
+        "The rigidity energy is outside the range of double precision: use smaller motions.");
+    }
     if (this->GenerateRigidityEnergy)
     {
       cartan::AddPointArray(run.Output(), "RigidityEnergy", rigid->GetVertexEnergies());

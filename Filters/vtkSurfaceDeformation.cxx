@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDeformation.h"
 
-#include "Bridge/DeformationMethod.h"
 #include "Bridge/MotionTable.h"
 #include "Bridge/PointArrays.h"
+#include "Bridge/Preparation.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Algebra/ConstrainedSolver.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/HandleCurve.h"
+#include "Kernel/Deformation/RoundingCheck.h"
 #include "Kernel/Deformation/SliverRemoval.h"
 #include "vtkHandleMotion.h"
 
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
@@ -22,25 +25,6 @@
 
 using cartan::Error;
 using cartan::ErrorCode;
-
-namespace cartan
-{
-/// What is kept of a surface, its handles and the settings between motions.
-struct Preparation
-{
-  HandleProblem Problem;
-  DeformationMethod Method;
-  DeformedSurface Result;
-
-  std::size_t GetBytes() const
-  {
-    const auto doubles = this->Problem.SoftWeights.size() + this->Result.Positions.size() +
-      this->Result.Transforms.size() + this->Result.FrameScale.size();
-    return this->Method.Deformer->GetBytes() + this->Problem.Handle.capacity() * sizeof(int) +
-      static_cast<std::size_t>(doubles) * sizeof(double);
-  }
-};
-}
 
 namespace
 {
@@ -105,6 +89,7 @@ void vtkSurfaceDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ConstrainHandlePositions: " << this->ConstrainHandlePositions << "\n";
   os << indent << "LaplacianWeights: " << this->LaplacianWeights << "\n";
   os << indent << "Solver: " << this->Solver << "\n";
+  os << indent << "RoundingCheckLimit: " << this->RoundingCheckLimit << "\n";
   os << indent << "GenerateFrameChange: " << this->GenerateFrameChange << "\n";
   os << indent << "GenerateRotationVector: " << this->GenerateRotationVector << "\n";
   os << indent << "Motions: " << this->State->Motions.ById.size() << "\n";
@@ -331,16 +316,30 @@ std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::Filt
   key.Add(this->ConstraintWeightArrayName);
   key.Add(cartan::KeyOfPointArray(input, this->ConstraintWeightArrayName).GetValue());
   this->AddSettings(key);
+  const bool isChecked = input->GetNumberOfPoints() <= this->RoundingCheckLimit;
+  key.Add(static_cast<std::uint64_t>(isChecked));
+  const auto make = [this](cartan::HandleProblem problem, const cartan::ExecutionContext& context)
+  {
+    auto fresh = std::make_unique<cartan::Preparation>();
+    fresh->Problem = std::move(problem);
+    fresh->Method =
+      this->NewMethod(fresh->Problem, static_cast<cartan::SolverBackend>(this->Solver), context);
+    return fresh;
+  };
   return run.Keep<cartan::Preparation>(key,
     [&]
     {
-      auto fresh = std::make_unique<cartan::Preparation>();
-      fresh->Problem = cartan::WithoutSlivers(
-        this->MakeProblem(input, surface, handles, moving), run.Context().Part(0.1, 0.12));
-      fresh->Method =
-        this->NewMethod(fresh->Problem, static_cast<cartan::SolverBackend>(this->Solver),
-          run.Context().Part(0.12, 0.75 * this->ProgressBeforeMotion()));
+      const double end = 0.75 * this->ProgressBeforeMotion();
+      const double middle = isChecked ? 0.5 * (0.12 + end) : end;
+      auto fresh = make(cartan::WithoutSlivers(this->MakeProblem(input, surface, handles, moving),
+                          run.Context().Part(0.1, 0.12)),
+        run.Context().Part(0.12, middle));
       this->State->Factorizations += fresh->Method.Deformer->GetNumberOfFactorizations();
+      if (isChecked)
+      {
+        fresh->Moved =
+          make(cartan::WithMovedPoints(fresh->Problem), run.Context().Part(middle, end));
+      }
       return fresh;
     });
 }
@@ -404,11 +403,14 @@ void vtkSurfaceDeformation::Deform(cartan::FilterRun& run)
   const int factorizations = deformer.GetNumberOfFactorizations();
   prepared->Method.Configure(run);
   const double ready = vtkTimerLog::GetUniversalTime();
-  deformer.Deform(targets,
-    this->GenerateFrameChange || this->GenerateRotationVector || this->NeedsTransforms(),
-    prepared->Result, run.Context().Part(this->ProgressBeforeMotion(), 0.95));
+  cartan::ComparedFields fields;
+  fields.Transforms =
+    this->GenerateFrameChange || this->GenerateRotationVector || this->NeedsTransforms();
+  fields.Rotations = this->GenerateRotationVector;
+  fields.Normals = input->GetPointData()->GetNormals() || input->GetCellData()->GetNormals();
+  cartan::DeformAndCheck(
+    *prepared, targets, fields, run, run.Context().Part(this->ProgressBeforeMotion(), 0.95));
   this->State->Factorizations += deformer.GetNumberOfFactorizations() - factorizations;
-  run.Warn(deformer.GetWarning());
 
   run.Warn(
     cartan::WriteSurface(*surface, prepared->Result.Positions, input, run.Output(), run.Context()));

@@ -251,9 +251,20 @@ public:
   vtkBooleanMacro(GenerateRotationVector, bool);
   ///@}
 
+  ///@{
+  /**
+   * Surfaces of up to so many points are deformed twice, the second time with all
+   * points moved by 1e-12 of the size, and a warning says where that changes the
+   * result by more than 1e-5 of the size: rounding decides there. It takes the time
+   * and memory of a deformation. 0: never. Default: 5000.
+   */
+  vtkSetClampMacro(RoundingCheckLimit, int, 0, VTK_INT_MAX);
+  vtkGetMacro(RoundingCheckLimit, int);
+  ///@}
+
   /**
    * The number of matrices that this filter has factorized since it was
-   * created.
+   * created, without those of the check for rounding.
    */
   int GetNumberOfFactorizations() const;
 
@@ -359,6 +370,7 @@ private:
   bool ScaleConstraintWeights = false;
   int LaplacianWeights = COTANGENT;
   int Solver = AUTOMATIC_SOLVER;
+  int RoundingCheckLimit = 5000;
   bool GenerateFrameChange = false;
   bool GenerateRotationVector = false;
 };

@@ -73,6 +73,7 @@ std::vector<Choice> DeformationChoices(std::vector<Choice> own = {})
       }),
     Name<Base>(&Base::SetConstraintWeightArrayName, { "", "Weight" }),
     Switch<Base>(&Base::SetScaleConstraintWeights),
+    Of<Base>(2, [](Base* filter, int value) { filter->SetRoundingCheckLimit(value ? 0 : 5000); }),
     Of<Base>(2, [](Base* filter, int value) { filter->SetConstrainHandlePositions(value == 0); }),
     Switch<Base>(&Base::SetGenerateFrameChange), Switch<Base>(&Base::SetGenerateRotationVector) };
   choices.insert(choices.end(), own.begin(), own.end());

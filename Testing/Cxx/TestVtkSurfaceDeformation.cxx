@@ -350,6 +350,7 @@ TEST(SurfaceDeformation, EveryParameterMakesItRunAgain)
         filter->SetTransformArrayName("Matrix");
       } },
     { "ConstraintWeightArrayName", [=]() { filter->SetConstraintWeightArrayName("Weight"); } },
+    { "RoundingCheckLimit", [=]() { filter->SetRoundingCheckLimit(7); } },
     { "ScaleConstraintWeights", [=]() { filter->ScaleConstraintWeightsOn(); } },
     { "LaplacianWeights", [=]() { filter->SetLaplacianWeightsToMeanValue(); } },
     { "Solver", [=]() { filter->SetSolverToEigen(); } },

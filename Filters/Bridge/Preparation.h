@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Bridge/DeformationMethod.h"
+#include "Kernel/Deformation/RoundingCheck.h"
+
+#include <cstddef>
+#include <memory>
+
+namespace cartan
+{
+/// What is kept of a surface, its handles and the settings between motions.
+struct Preparation
+{
+  HandleProblem Problem;
+  DeformationMethod Method;
+  DeformedSurface Result;
+  /// The same with points moved by rounding, where that is checked (see
+  /// WithMovedPoints).
+  std::unique_ptr<Preparation> Moved;
+
+  std::size_t GetBytes() const;
+};
+
+/// Deforms, with transforms where those are compared; with Moved a second time. Warns of what is
+/// odd, and of what differs.
+void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
+  const ComparedFields& fields, FilterRun& run, const ExecutionContext& context);
+}

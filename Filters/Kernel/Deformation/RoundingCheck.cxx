@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Deformation/RoundingCheck.h"
+
+#include "Algebra/Rotation.h"
+#include "Mesh/Geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <sstream>
+
+namespace cartan
+{
+HandleProblem WithMovedPoints(HandleProblem problem)
+{
+  Points moved = *problem.Rest;
+  const double by = RoundingOfInput * BoundingDiagonal(moved, problem.GetWhole()->GetTriangles());
+  std::mt19937 random(1);
+  for (int v = 0; v < problem.Mesh->NumberOfVertices(); ++v)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      moved(v, c) += by * (std::ldexp(static_cast<double>(random()), -31) - 1.0);
+    }
+  }
+  problem.Rest = std::make_shared<const Points>(std::move(moved));
+  return problem;
+}
+
+RoundingDifference CompareResults(const HandleProblem& problem, const DeformedSurface& result,
+  const DeformedSurface& other, const ComparedFields& fields)
+{
+  const TriangleMesh& mesh = *problem.GetWhole();
+  Points normals;
+  Points otherNormals;
+  if (fields.Normals)
+  {
+    normals = VertexNormals(mesh, result.Positions);
+    otherNormals = VertexNormals(mesh, other.Positions);
+  }
+  const double size = std::max(BoundingDiagonal(result.Positions, mesh.GetTriangles()),
+    BoundingDiagonal(*problem.Rest, mesh.GetTriangles()));
+  RoundingDifference difference;
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (!mesh.IsUsed(v))
+    {
+      continue;
+    }
+    const double moved = (result.Positions.row(v) - other.Positions.row(v)).norm() / size;
+    double rest = 0.0;
+    if (fields.Transforms)
+    {
+      const auto transform = MatrixAt(result.Transforms, v);
+      rest = (transform - MatrixAt(other.Transforms, v)).norm() / (1.0 + transform.norm());
+    }
+    if (fields.Rotations)
+    {
+      rest = std::max(rest,
+        (ProjectOnRotations(MatrixAt(result.Transforms, v)) -
+          ProjectOnRotations(MatrixAt(other.Transforms, v)))
+          .norm());
+    }
+    if (fields.Normals)
+    {
+      rest = std::max(rest, (normals.row(v) - otherNormals.row(v)).norm());
+    }
+    // Also where one of them is not finite.
+    if (!(std::max(moved, rest) <= RoundingOfResult))
+    {
+      difference.Vertices.Add(v);
+      difference.Largest = std::max(difference.Largest, moved);
+    }
+  }
+  return difference;
+}
+
+std::string RoundingDifference::Describe() const
+{
+  if (this->Vertices.IsEmpty())
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text << "Rounding decides about " << this->Vertices.Describe("point", "points")
+       << ": when the points of the surface move by " << RoundingOfInput << " of its size, ";
+  if (this->Largest > RoundingOfResult)
+  {
+    text.precision(2);
+    text << "the result moves by up to " << this->Largest << " of it. ";
+  }
+  else
+  {
+    text << "the rotations or normals there change. ";
+  }
+  text << "The handles leave open what happens there, turn it by about half a turn against what is "
+          "beside it, or crush it: hold more points, use smaller motions, or Rotation Invariant "
+          "Deformation "
+          "with uniform LaplacianWeights and FrameProjection off.";
+  return text.str();
+}
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/Error.h"
+#include "Deformation/HandleProblem.h"
+
+namespace cartan
+{
+/// Whether a deformation is determined by what is known of the surface is found by
+/// deforming it twice, the second time with points moved at random by RoundingOfInput
+/// of the size: more than rounding, less than any surface is known to. Where handles
+/// leave a system singular, where neighbors turn by half a turn against each other or
+/// are equally far from two handles, the results differ by any amount.
+constexpr double RoundingOfInput = 1e-12;
+
+/// How far they may differ, in parts of the size.
+constexpr double RoundingOfResult = 1e-5;
+
+/// The problem with other rest positions; the same mesh and riders. The same numbers
+/// on every machine.
+HandleProblem WithMovedPoints(HandleProblem problem);
+
+/// What is compared beside positions: Transforms, the rotations in them, and the
+/// normals of the surface.
+struct ComparedFields
+{
+  bool Transforms = false;
+  bool Rotations = false;
+  bool Normals = false;
+};
+
+/// What two results differ in by more than RoundingOfResult.
+struct RoundingDifference
+{
+  IdSample Vertices;
+  double Largest = 0.0; ///< of positions, in parts of the size
+
+  /// In a sentence, with what to do; empty where there is nothing.
+  std::string Describe() const;
+};
+
+/// Compares at the vertices of the mesh with slivers.
+RoundingDifference CompareResults(const HandleProblem& problem, const DeformedSurface& result,
+  const DeformedSurface& other, const ComparedFields& fields);
+}
