@@ -16,6 +16,10 @@ namespace
 /// surface ends or is cut: 3 #T.
 using Mates = std::vector<int>;
 
+/// Of a triangle over an edge, in parts of the edge. The angle of a lower one is what
+/// rounding makes it a thousand sizes away from the origin.
+constexpr double LeastHeight = 1e-10;
+
 bool RunOpposite(const Triangles& triangles, int a, int b)
 {
   return SideFrom(triangles, a) != SideFrom(triangles, b);
@@ -40,18 +44,19 @@ double SignedVolume(const Triangles& triangles, const Points& points)
 /// clockwise seen from v. A triangle that runs from u to v has its outside on the side
 /// of larger angles: with alternating directions, a body lies between a triangle
 /// that runs from v to u and the next one. Joins those; nothing where directions
-/// do not alternate.
+/// do not alternate, or where a triangle without area lies at no angle.
 void PairAroundEdge(const EdgeTable& edges, int edge, const Triangles& triangles,
   const Points& points, bool isInsideOut, Mates& mates)
 {
   const int* begin = edges.Begin(edge);
   const int u = SideFrom(triangles, *begin);
-  const Eigen::Vector3d axis =
-    (points.row(SideTo(triangles, *begin)) - points.row(u)).transpose().normalized();
-  if (axis.isZero(0.0))
+  const Eigen::Vector3d along = (points.row(SideTo(triangles, *begin)) - points.row(u)).transpose();
+  const double length = along.norm();
+  if (!(length > 0.0))
   {
     return;
   }
+  const Eigen::Vector3d axis = along / length;
   const Eigen::Vector3d x = axis.unitOrthogonal();
   const Eigen::Vector3d y = axis.cross(x);
   std::vector<std::pair<double, int>> around;
@@ -59,6 +64,11 @@ void PairAroundEdge(const EdgeTable& edges, int edge, const Triangles& triangles
   {
     const Eigen::Vector3d arm =
       (points.row(SideApex(triangles, *side)) - points.row(u)).transpose();
+    const double height = std::hypot(arm.dot(x), arm.dot(y));
+    if (!(height > LeastHeight * (std::abs(arm.dot(axis)) + length)))
+    {
+      return;
+    }
     around.emplace_back(std::atan2(arm.dot(y), arm.dot(x)), *side);
   }
   std::sort(around.begin(), around.end());
