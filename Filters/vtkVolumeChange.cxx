@@ -90,23 +90,22 @@ double WithoutRounding(const cartan::ComponentVolume& component)
   return cartan::EnclosesVolume(component.Volume, component.Area) ? component.Volume : 0.0;
 }
 
-/// A sum that knows what of it is rounding.
+/// A sum of volumes that knows what of it is rounding: of thin shells, whose triangles
+/// contribute much more than what remains, a part of their area.
 class Total
 {
 public:
-  void Add(double value)
+  void Add(const cartan::ComponentVolume& component)
   {
-    this->Sum += value;
-    this->SumOfSizes += std::abs(value);
+    const double volume = ::WithoutRounding(component);
+    this->Sum += volume;
+    this->Rounding += 1e-12 * std::abs(volume) + 1e-15 * component.Area * std::sqrt(component.Area);
   }
-  double WithoutRounding() const
-  {
-    return std::abs(this->Sum) > 1e-12 * this->SumOfSizes ? this->Sum : 0.0;
-  }
+  double WithoutRounding() const { return std::abs(this->Sum) > this->Rounding ? this->Sum : 0.0; }
 
 private:
   double Sum = 0.0;
-  double SumOfSizes = 0.0;
+  double Rounding = 0.0;
 };
 
 std::string DescribeSigns(double reference, double current, const std::string& meaning)
@@ -161,8 +160,8 @@ double AddVolume(const Changes& changes, ChangeTable& table)
   const std::size_t count = changes.ComponentsBefore.size();
   for (std::size_t i = 0; i < count; ++i)
   {
-    before.Add(WithoutRounding(changes.ComponentsBefore[i]));
-    now.Add(WithoutRounding(changes.ComponentsNow[i]));
+    before.Add(changes.ComponentsBefore[i]);
+    now.Add(changes.ComponentsNow[i]);
     open += changes.ComponentsBefore[i].IsClosed ? 0 : 1;
   }
   if (open > 0)

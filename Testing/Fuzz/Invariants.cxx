@@ -52,6 +52,15 @@ double LargestCoordinate(const Case& of)
   return largest;
 }
 
+/// The digits of single precision that points and results have.
+double PrecisionOf(const Case& of, const Outcome& outcome)
+{
+  const auto sizes = outcome.Fields[0].Values.array().abs();
+  return of.Surface.IsFloat
+    ? 3e-7 * std::max(LargestCoordinate(of), sizes.isFinite().select(sizes, 0.0).maxCoeff())
+    : 0.0;
+}
+
 /// How much a change of the points in the last digits of a coordinate changes a field
 /// of the result.
 Difference RoundingOf(const std::string& name, const Case& original, const Outcome& first,
@@ -83,7 +92,7 @@ Difference RoundingOf(const std::string& name, const Case& original, const Outco
       Relation relation;
       if (original.Surface.IsFloat)
       {
-        relation.PointTolerance = 3e-7 * LargestCoordinate(original);
+        relation.PointTolerance = PrecisionOf(original, first);
       }
       const Difference one = CompareField(field, *other, relation, Size(original.Surface.Points));
       worst = one.Size > worst.Size ? one : worst;
@@ -123,11 +132,7 @@ std::optional<Finding> CheckChanged(const std::string& name, const Case& origina
   }
   // What single precision cannot hold is no difference.
   relation.PointTolerance =
-    3e-7 * relation.Map.Scale * (original.Surface.IsFloat ? LargestCoordinate(original) : 0.0);
-  if (changed.Surface.IsFloat)
-  {
-    relation.PointTolerance += 3e-7 * LargestCoordinate(changed);
-  }
+    relation.Map.Scale * PrecisionOf(original, first) + PrecisionOf(changed, second);
   const Difference difference = Compare(first, second, relation, Size(original.Surface.Points));
   if (difference.IsNone())
   {

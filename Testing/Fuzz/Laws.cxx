@@ -105,7 +105,7 @@ bool IsExactForRigid(const Case& of)
 {
   if (of.Filter == "SurfaceMorph")
   {
-    return of.Get("Method", 0.0) != 3.0;
+    return of.Get("Method", 0.0) < 3.0; // what is larger counts as linear
   }
   if (!of.IsDeformation() || of.Get("ConstrainHandlePositions", 1.0) == 0.0)
   {

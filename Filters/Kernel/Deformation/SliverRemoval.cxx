@@ -46,8 +46,12 @@ public:
     , Rest(*problem.Rest)
     , Handle(problem.Handle)
     , IsSoft(problem.SoftWeights.size() > 0)
-    , IsFirst(Mesh->NumberOfComponents() > 0 ? problem.Handle.size() : 0, 0)
+    , IsFirst(problem.Handle.size(), 0)
   {
+    if (this->Mesh->NumberOfComponents() < 2)
+    {
+      return; // the number of a single one is certain
+    }
     std::vector<char> isSeen(this->Mesh->NumberOfComponents(), 0);
     for (int v = 0; v < this->Mesh->NumberOfVertices(); ++v)
     {
@@ -221,6 +225,16 @@ private:
     this->IsLocked[apex] = 1;
   }
 
+  double RingLength(int v) const
+  {
+    double length = 0.0;
+    for (int d = this->Mesh->RingBegin(v); d < this->Mesh->RingEnd(v); ++d)
+    {
+      length += (this->At(this->Mesh->Neighbor(d)) - this->At(v)).norm();
+    }
+    return length;
+  }
+
   /// Merges one end of d into the other, if the mesh stays a manifold of the same
   /// shape.
   void Collapse(int v, int d)
@@ -230,7 +244,10 @@ private:
     {
       return;
     }
-    for (const auto& [goes, stays] : { std::pair(w, v), std::pair(v, w) })
+    // First the one that less of the surface hangs on.
+    const bool isSmaller = this->RingLength(v) < this->RingLength(w);
+    const std::pair<int, int> first = isSmaller ? std::pair(v, w) : std::pair(w, v);
+    for (const auto& [goes, stays] : { first, std::pair(first.second, first.first) })
     {
       if (this->CanMerge(goes, stays, d) && this->Merge(goes, stays))
       {
