@@ -24,6 +24,7 @@ DeformedSurface AtRest(const HandleProblem& problem)
   DeformedSurface surface;
   surface.Positions = *problem.Rest;
   surface.Transforms = cartan::Identities(static_cast<int>(problem.Rest->rows()));
+  surface.FrameScale.setOnes(problem.Rest->rows());
   return surface;
 }
 

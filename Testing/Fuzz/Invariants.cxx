@@ -55,10 +55,12 @@ double LargestCoordinate(const Case& of)
 /// The digits of single precision that points and results have.
 double PrecisionOf(const Case& of, const Outcome& outcome)
 {
+  if (!of.Surface.IsFloat || outcome.Fields.empty() || outcome.Fields[0].Values.size() == 0)
+  {
+    return 0.0;
+  }
   const auto sizes = outcome.Fields[0].Values.array().abs();
-  return of.Surface.IsFloat
-    ? 3e-7 * std::max(LargestCoordinate(of), sizes.isFinite().select(sizes, 0.0).maxCoeff())
-    : 0.0;
+  return 3e-7 * std::max(LargestCoordinate(of), sizes.isFinite().select(sizes, 0.0).maxCoeff());
 }
 
 /// How much a change of the points in the last digits of a coordinate changes a field

@@ -48,7 +48,7 @@ RoundingDifference CompareResults(const HandleProblem& problem, const DeformedSu
       continue;
     }
     const double moved = (result.Positions.row(v) - other.Positions.row(v)).norm() / size;
-    double rest = 0.0;
+    double rest = std::abs(result.FrameScale[v] - other.FrameScale[v]);
     if (fields.Transforms)
     {
       const auto transform = MatrixAt(result.Transforms, v);
