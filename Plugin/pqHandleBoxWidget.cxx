@@ -7,12 +7,18 @@
 #include "pqProxy.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
+#include "pqView.h"
+#include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
+#include "vtkNew.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderWindowInteractor.h"
 #include "vtkSMNewWidgetRepresentationProxy.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyListDomain.h"
 #include "vtkSMTrace.h"
 #include "vtkSMUncheckedPropertyHelper.h"
+#include "vtkSMViewProxy.h"
 
 #include <QPushButton>
 
@@ -67,10 +73,12 @@ pqHandleBoxWidget::pqHandleBoxWidget(vtkSMProxy* motion, vtkSMPropertyGroup* gro
     reset->setToolTip(tr("Moves the handle back to its place in the input."));
   }
 
-  // Queued, because the properties learn only after the signals where the box is.
+  // Later, because the properties learn only after the signals where the box is; and once
+  // for all moves that have come meanwhile.
+  this->Follow.setSingleShot(true);
+  QObject::connect(&this->Follow, &QTimer::timeout, this, &pqHandleBoxWidget::follow);
   QObject::connect(this, &pqHandleBoxWidget::startInteraction, this, &pqHandleBoxWidget::startDrag);
-  QObject::connect(
-    this, &pqHandleBoxWidget::interaction, this, &pqHandleBoxWidget::follow, Qt::QueuedConnection);
+  QObject::connect(this, &pqHandleBoxWidget::interaction, this, [this] { this->Follow.start(0); });
   QObject::connect(this, &pqHandleBoxWidget::endInteraction, this, &pqHandleBoxWidget::endDrag,
     Qt::QueuedConnection);
 }
@@ -78,6 +86,7 @@ pqHandleBoxWidget::pqHandleBoxWidget(vtkSMProxy* motion, vtkSMPropertyGroup* gro
 pqHandleBoxWidget::~pqHandleBoxWidget()
 {
   this->closeUndoSet();
+  this->setBoxRenders(true);
 }
 
 pqProxy* pqHandleBoxWidget::appliedFilter() const
@@ -139,22 +148,57 @@ void pqHandleBoxWidget::startDrag()
   BEGIN_UNDO_SET(tr("Move Handle"));
   this->IsUndoSetOpen = true;
   pqProxy* filter = this->appliedFilter();
+  // The box and the surface are drawn together, once for each move.
+  this->setBoxRenders(!filter);
   this->Unmodified = filter && filter->modifiedState() == pqProxy::UNMODIFIED ? filter : nullptr;
+}
+
+void pqHandleBoxWidget::setBoxRenders(bool renders)
+{
+  if (this->Interactor)
+  {
+    this->Interactor->RemoveObserver(this->RenderBlock);
+    this->Interactor = nullptr;
+  }
+  auto* viewProxy = this->view() ? vtkSMViewProxy::SafeDownCast(this->view()->getProxy()) : nullptr;
+  vtkRenderWindow* window = viewProxy ? viewProxy->GetRenderWindow() : nullptr;
+  if (!renders && window && window->GetInteractor())
+  {
+    // The view draws when its interactor says so; this observer is asked first.
+    vtkNew<vtkCallbackCommand> block;
+    block->SetAbortFlagOnExecute(1);
+    block->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
+    this->Interactor = window->GetInteractor();
+    this->RenderBlock = this->Interactor->AddObserver(vtkCommand::RenderEvent, block, 1.0f);
+  }
 }
 
 void pqHandleBoxWidget::follow()
 {
-  if (this->appliedFilter())
+  if (!this->appliedFilter())
   {
-    this->apply();
+    return;
+  }
+  this->apply();
+  auto* viewProxy = this->view() ? vtkSMViewProxy::SafeDownCast(this->view()->getProxy()) : nullptr;
+  if (this->IsUndoSetOpen && viewProxy)
+  {
+    viewProxy->Update();
+    viewProxy->InteractiveRender();
+  }
+  else
+  {
     this->render();
   }
 }
 
 void pqHandleBoxWidget::endDrag()
 {
+  this->Follow.stop();
   this->follow();
   this->closeUndoSet();
+  this->setBoxRenders(true);
+  this->render();
   if (this->appliedFilter())
   {
     // What has changed within the scope is recorded: where the drag ended.

@@ -20,8 +20,10 @@
 #include "vtkWeakPointer.h"
 
 #include <QPointer>
+#include <QTimer>
 
 class pqProxy;
+class vtkRenderWindowInteractor;
 class vtkSMProxy;
 
 class pqHandleBoxWidget : public pqBoxPropertyWidget
@@ -44,6 +46,9 @@ private:
   /// The filter whose handle moves, if it has been applied.
   pqProxy* appliedFilter() const;
 
+  /// Whether the view draws the box by itself when it moves.
+  void setBoxRenders(bool renders);
+
   void startDrag();
   void follow();
   void endDrag();
@@ -52,6 +57,13 @@ private:
   /// A drag is one step to undo.
   void closeUndoSet();
   bool IsUndoSetOpen = false;
+
+  /// The view's interactor, and what keeps it from drawing, while the surface follows.
+  vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
+  unsigned long RenderBlock = 0;
+
+  /// Lets the surface follow.
+  QTimer Follow;
 
   /// The filter that offers this motion.
   vtkWeakPointer<vtkSMProxy> Filter;
