@@ -185,6 +185,46 @@ TEST(AsRigidAsPossibleDeformer, NeverRaisesTheEnergy)
   }
 }
 
+TEST(AsRigidAsPossibleDeformer, DoesNotDependOnTheOrderOfVertices)
+{
+  const Shape shape = shapes::RealMesh("elephant");
+  Shape reversed = shape;
+  reversed.Positions = shape.Positions.colwise().reverse();
+  reversed.Faces = (shape.NumberOfVertices() - 1 - shape.Faces.array()).matrix();
+  for (const RigidityEnergy energy : AllEnergies)
+  {
+    for (const InitialGuess guess : { InitialGuess::RestShape, InitialGuess::ShapePreserving })
+    {
+      AsRigidAsPossibleDeformer deformer(MakeProblem(shape, 0), energy, guess);
+      AsRigidAsPossibleDeformer other(MakeProblem(reversed, 0), energy, guess);
+      const Points expected = Deform(deformer, BendOf(shape)).Positions;
+      const Points found = Deform(other, BendOf(shape)).Positions.colwise().reverse();
+      EXPECT_LT((found - expected).rowwise().norm().maxCoeff(),
+        1e-6 * cartan::BoundingDiagonal(shape.Positions));
+    }
+  }
+}
+
+TEST(AsRigidAsPossibleDeformer, SaysUntilWhenSmoothedRotationsMove)
+{
+  const Shape shape = shapes::Bar(4, 4, 20, { 1.0, 1.0, 5.0 }, true);
+  const HandleProblem problem = MakeProblem(shape, 2);
+  const HandleTargets targets = BendOf(shape);
+  const auto warning = [&](InitialGuess guess, int iterations)
+  {
+    AsRigidAsPossibleDeformer deformer(problem, RigidityEnergy::SmoothedRotations, guess);
+    deformer.SetIteration(iterations, 1e-4);
+    Deform(deformer, targets);
+    return deformer.GetWarning();
+  };
+  EXPECT_NE(
+    warning(InitialGuess::RestShape, 10).find("have not settled: the last of 10 iterations"),
+    std::string::npos);
+  // Both pieces of advice.
+  EXPECT_EQ(warning(InitialGuess::RestShape, 300), "");
+  EXPECT_EQ(warning(InitialGuess::ShapePreserving, 10), "");
+}
+
 TEST(AsRigidAsPossibleDeformer, ReportsTheEnergyOfItsDefinition)
 {
   const Shape shape = shapes::RealMesh("elephant");

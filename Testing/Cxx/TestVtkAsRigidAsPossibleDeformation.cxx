@@ -58,6 +58,13 @@ TEST_F(AsRigidAsPossibleDeformation, LowersTheEnergyOfTheGuess)
     {
       this->Filter->SetInitialGuess(guess);
       this->Filter->Update();
+      if (energy == vtkAsRigidAsPossibleDeformation::SMOOTHED_ROTATIONS &&
+        guess == vtkAsRigidAsPossibleDeformation::REST_SHAPE)
+      {
+        vtktest::ExpectMessage(this->Log->Warnings,
+          { "have not settled: the last of 10 iterations", "Raise MaximumIterations" });
+        this->Log->Clear();
+      }
       vtktest::ExpectQuiet(*this->Log);
       EXPECT_GT(this->Filter->GetNumberOfIterations(), 0);
       EXPECT_LE(this->Filter->GetNumberOfIterations(), 10);

@@ -14,6 +14,17 @@ namespace cartan
 namespace
 {
 using Row = Eigen::RowVector3d;
+
+/// Below this part of what all edges would cost if they vanished, energies are made
+/// of rounding.
+constexpr double RoundingPart = 1e-20;
+
+/// How often coupled rotations are fitted between two solves for positions.
+constexpr int CoupledSweeps = 2;
+
+/// The largest parts of the energy and of the size in a last step that has settled.
+constexpr double SettledDecrease = 0.01;
+constexpr double SettledMove = 0.001;
 }
 
 AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, RigidityEnergy energy,
@@ -44,7 +55,7 @@ AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, Rigi
   }
   if (energy == RigidityEnergy::SmoothedRotations)
   {
-    this->Colors = this->Cells.Color();
+    this->AreCoupled = true;
     const Eigen::VectorXd areas =
       MixedVoronoiAreas(*this->Problem.Mesh, *this->Problem.Rest, context);
     for (int i = 0; i < this->System->NumberOfUnknowns(); ++i)
@@ -74,8 +85,8 @@ AsRigidAsPossibleDeformer::~AsRigidAsPossibleDeformer() = default;
 std::size_t AsRigidAsPossibleDeformer::GetBytes() const
 {
   return this->GetBaseBytes() + this->Guess->GetBytes() + this->Cells.GetBytes() +
-    TotalBytes(this->Rims, this->Colors, this->HoldsRotation, this->MovingHandles, this->Rest,
-      this->Current, this->Rotations, this->CellEnergies, this->Residual, this->Energies);
+    TotalBytes(this->Rims, this->HoldsRotation, this->MovingHandles, this->Rest, this->Current,
+      this->Rotations, this->Before, this->CellEnergies, this->Residual, this->Energies);
 }
 
 Eigen::VectorXd AsRigidAsPossibleDeformer::GetVertexEnergies() const
@@ -95,9 +106,11 @@ void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
     return;
   }
   // Spokes: E_i is least for the rotation closest to
-  //   sum_j w_ij (x_i - x_j) (p_i - p_j)^T;
-  // each pair of coupled rotations is in the sum over both its cells, which
-  // adds 2 alpha A sum_j w_ij R_j.
+  //   sum_j w_ij (x_i - x_j) (p_i - p_j)^T.
+  // Coupled rotations minimize - tr R^T S - alpha A tr R^T (W + D) R, concave in R, as
+  // W + D with the row sums D of W is not negative; D adds a constant. So the
+  // rotations closest to its negative gradient do not raise it, all at once: to
+  // S_i + 2 alpha A sum_j w_ij (R_j + R_i), whatever the order of the cells.
   const Row rest = this->Rest.row(cell);
   const Row current = this->Current.row(cell);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -109,7 +122,8 @@ void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
     covariance += edge.transpose() * restEdge;
     if (bending > 0.0)
     {
-      covariance += 2.0 * bending * spoke.Weight * MatrixAt(this->Rotations, spoke.Neighbor);
+      covariance += 2.0 * bending * spoke.Weight *
+        (MatrixAt(this->Before, spoke.Neighbor) + MatrixAt(this->Before, cell));
     }
   }
   if (!this->Rims.empty())
@@ -132,29 +146,20 @@ void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
 
 void AsRigidAsPossibleDeformer::FitRotations(const ExecutionContext& context)
 {
-  if (this->Colors.empty())
+  const double bending = this->BendingFactor();
+  const int sweeps = this->AreCoupled ? CoupledSweeps : 1;
+  for (int sweep = 0; sweep < sweeps; ++sweep)
   {
+    if (this->AreCoupled)
+    {
+      this->Before = this->Rotations;
+    }
     context.For(this->Cells.ActiveCount,
       [&](int begin, int end)
       {
         for (int cell = begin; cell < end; ++cell)
         {
-          this->FitCell(cell, 0.0);
-        }
-      });
-    return;
-  }
-  // Each fit sees its neighbors' rotations, so that none raises the energy;
-  // those of one color see none of each other.
-  const double bending = this->BendingFactor();
-  for (const std::vector<int>& cells : this->Colors)
-  {
-    context.For(static_cast<int>(cells.size()),
-      [&](int begin, int end)
-      {
-        for (int i = begin; i < end; ++i)
-        {
-          this->FitCell(cells[i], bending);
+          this->FitCell(cell, bending);
         }
       });
   }
@@ -349,21 +354,31 @@ void AsRigidAsPossibleDeformer::SolveStep(Eigen::VectorXd& step)
   }
 }
 
-/// Below this part of what all edges would cost if they vanished, energies are
-/// made of rounding.
-double AsRigidAsPossibleDeformer::NegligibleEnergy() const
+void AsRigidAsPossibleDeformer::WarnIfUnsettled(const Eigen::VectorXd& step)
 {
-  double negligible = 0.0;
-  for (int cell = 0; cell < this->Cells.Count; ++cell)
+  const double decrease = 1.0 - this->Energies.back() / this->Energies[this->Energies.size() - 2];
+  if (!(decrease > SettledDecrease))
   {
-    for (int s = this->Cells.SpokeOffsets[cell]; s < this->Cells.SpokeOffsets[cell + 1]; ++s)
+    return;
+  }
+  const double settled = SettledMove * BoundingDiagonal(*this->Problem.Rest);
+  IdSample moved;
+  for (int i = 0; i < this->System->NumberOfUnknowns(); ++i)
+  {
+    if (step.segment<3>(3 * i).norm() > settled)
     {
-      const RigidCells::Spoke& spoke = this->Cells.Spokes[s];
-      negligible += 1e-20 * spoke.Weight *
-        (this->Rest.row(cell) - this->Rest.row(spoke.Neighbor)).squaredNorm();
+      moved.Add(this->Cells.Vertices[i]);
     }
   }
-  return negligible;
+  if (!moved.IsEmpty())
+  {
+    this->Warning += (this->Warning.empty() ? "" : " ") +
+      ("The smoothed rotations have not settled: the last of " +
+        std::to_string(this->GetNumberOfIterations()) + " iterations lowers the energy by " +
+        std::to_string(std::lround(100.0 * decrease)) + " % and moves " +
+        moved.Describe("point", "points") +
+        " by over .1 % of the size. Raise MaximumIterations, or guess SHAPE_PRESERVING.");
+  }
 }
 
 void AsRigidAsPossibleDeformer::WriteResult(bool wantTransforms, DeformedSurface& result) const
@@ -393,7 +408,7 @@ void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, boo
   Eigen::VectorXd plain;
   Eigen::VectorXd next;
   Matrices rotations;
-  const double negligible = this->NegligibleEnergy();
+  const double negligible = RoundingPart * this->Cells.EnergyOfVanishedEdges(this->Rest);
   this->Energies = { this->Evaluate(targets, context) };
   this->Converged = numberOfUnknowns == 0;
   while (!this->Converged && this->GetNumberOfIterations() < this->MaximumIterations)
@@ -405,7 +420,7 @@ void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, boo
     plain = unknowns + step;
     const bool isExtrapolated = extrapolation.Next(plain, step, next);
     unknowns = next;
-    if (isExtrapolated && !this->Colors.empty())
+    if (isExtrapolated && this->AreCoupled)
     {
       rotations = this->Rotations;
     }
@@ -414,7 +429,7 @@ void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, boo
     {
       unknowns = plain;
       extrapolation.Forget();
-      if (!this->Colors.empty())
+      if (this->AreCoupled)
       {
         // Coupled rotations depend on where they come from.
         this->Rotations = rotations;
@@ -423,6 +438,10 @@ void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, boo
     }
     this->Energies.push_back(after);
     this->Converged = before - after <= this->Tolerance * (std::abs(after) + negligible);
+  }
+  if (this->AreCoupled && !this->Converged && step.size() > 0)
+  {
+    this->WarnIfUnsettled(step);
   }
   this->HasPrevious = true;
   this->WriteResult(wantTransforms, result);

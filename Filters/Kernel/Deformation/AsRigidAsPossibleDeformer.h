@@ -105,6 +105,8 @@ public:
     return this->Guess->GetNumberOfFactorizations();
   }
   int GetNumberOfFreeVertices() const override { return this->System->NumberOfUnknowns(); }
+  /// Of the initial guess; of SmoothedRotations also when the last step still
+  /// moves vertices.
   std::string GetWarning() const override { return this->Warning; }
   std::size_t GetBytes() const override;
 
@@ -124,14 +126,11 @@ private:
   Eigen::Vector3d ResidualOfSpoke(int spoke, const Eigen::Vector3d& edge,
     const Eigen::Vector3d& restEdge, const Eigen::Vector3d& turned) const;
   /// alpha A; 0 unless rotations are coupled.
-  double BendingFactor() const
-  {
-    return this->Colors.empty() ? 0.0 : this->Bending * this->FreeArea;
-  }
+  double BendingFactor() const { return this->AreCoupled ? this->Bending * this->FreeArea : 0.0; }
   void Start(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
   void SolveStep(Eigen::VectorXd& step);
-  double NegligibleEnergy() const;
+  void WarnIfUnsettled(const Eigen::VectorXd& step);
   void WriteResult(bool wantTransforms, DeformedSurface& result) const;
 
   InitialGuess GuessKind;
@@ -143,15 +142,15 @@ private:
 
   RigidCells Cells;
   std::vector<RigidCells::Rim> Rims; // as Cells.Spokes; empty without rims
-  /// RigidCells::Color(); empty unless rotations are coupled.
-  std::vector<std::vector<int>> Colors;
-  std::vector<char> HoldsRotation; // #cells
-  std::vector<int> MovingHandles;  // #V, index in Moving or -1
+  bool AreCoupled = false;           // the rotations of neighbors
+  std::vector<char> HoldsRotation;   // #cells
+  std::vector<int> MovingHandles;    // #V, index in Moving or -1
   double FreeArea = 0.0;
 
   Points Rest;                  // #sites x 3
   Points Current;               // #sites x 3
   Matrices Rotations;           // #sites x 9
+  Matrices Before;              // the same before the last fit, where coupled
   Eigen::VectorXd CellEnergies; // #cells
   Points Residual;              // #unknowns x 3: b - L x
   bool HasPrevious = false;

@@ -176,7 +176,7 @@ Eigen::Vector3d FrameDeformer::RightHandSide(int unknown, const HandleTargets& t
     if (!isByTriangle)
     {
       const Eigen::Vector3d edgeVector = point - rest.row(w).transpose();
-      sum += half * (transform * edgeVector - edgeVector + (other * edgeVector - edgeVector));
+      sum += half * ((transform + other) * edgeVector - 2.0 * edgeVector);
     }
     if (offsets)
     {

@@ -126,31 +126,17 @@ std::vector<RigidCells::Rim> RigidCells::FindRims(const HandleProblem& problem) 
   return rims;
 }
 
-std::vector<std::vector<int>> RigidCells::Color() const
+double RigidCells::EnergyOfVanishedEdges(const Points& rest) const
 {
-  // Greedy: the smallest color that no neighbor has.
-  std::vector<std::vector<int>> cellsOfColor;
-  std::vector<int> colors(this->ActiveCount, -1);
-  std::vector<char> isTaken;
-  for (int cell = 0; cell < this->ActiveCount; ++cell)
+  double energy = 0.0;
+  for (int cell = 0; cell < this->Count; ++cell)
   {
-    isTaken.assign(cellsOfColor.size() + 1, 0);
     for (int s = this->SpokeOffsets[cell]; s < this->SpokeOffsets[cell + 1]; ++s)
     {
-      const int neighbor = this->Spokes[s].Neighbor;
-      if (neighbor < this->ActiveCount && colors[neighbor] >= 0)
-      {
-        isTaken[colors[neighbor]] = 1;
-      }
+      const Spoke& spoke = this->Spokes[s];
+      energy += spoke.Weight * (rest.row(cell) - rest.row(spoke.Neighbor)).squaredNorm();
     }
-    const auto color = std::find(isTaken.begin(), isTaken.end(), 0) - isTaken.begin();
-    colors[cell] = static_cast<int>(color);
-    if (color == static_cast<std::ptrdiff_t>(cellsOfColor.size()))
-    {
-      cellsOfColor.emplace_back();
-    }
-    cellsOfColor[color].push_back(cell);
   }
-  return cellsOfColor;
+  return energy;
 }
 }

@@ -42,8 +42,8 @@ struct RigidCells
   /// The triangles beside each spoke, weighted by HandleProblem::PositionWeights.
   std::vector<Rim> FindRims(const HandleProblem& problem) const;
 
-  /// Active cells in groups of which no two are neighbors.
-  std::vector<std::vector<int>> Color() const;
+  /// sum_i sum_j w_ij |p_i - p_j|^2 over the spokes, with `rest` #sites x 3.
+  double EnergyOfVanishedEdges(const Points& rest) const;
 
   std::size_t GetBytes() const
   {
