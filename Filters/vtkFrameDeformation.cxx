@@ -18,12 +18,12 @@ namespace
 std::unique_ptr<cartan::VolumeModel> NewModel(
   const cartan::HandleProblem& problem, const cartan::ExecutionContext& context)
 {
-  const cartan::RayTree tree(problem.Mesh->GetTriangles(), *problem.Rest);
+  const cartan::RayTree tree(problem.Mesh->GetTriangles(), *problem.Rest, context.Part(0.0, 0.3));
   return std::make_unique<cartan::VolumeModel>(cartan::MeasureVolumeModel(
     *problem.Mesh, *problem.Rest,
     [&tree](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
     { return tree.FirstHit(from, direction); },
-    context));
+    context.Part(0.3, 1.0)));
 }
 
 /// Of the mesh that is solved on: which slivers it is without depends on the handles.

@@ -1,93 +1,115 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints what each filter keeps from one update to the next, in bytes per point, for a scanned
-surface of 104,002 points: the table of Documentation/Memory.md.
+"""Prints the memory of each filter in bytes per point, for a scanned surface of 104,002 points:
+what it keeps from one update to the next, and what its first update takes at its peak beyond
+its input. The table of Documentation/Memory.md.
 
-Run it with pvpython and the variables of the tests, CARTAN_MESH_DIR and PYTHONPATH.
+Run it with pvpython and the variables of the tests, CARTAN_MESH_DIR and PYTHONPATH; memory.py 2
+subdivides twice: 416,002 points. Linux only: peaks come from /proc.
 """
+import ctypes
 import os
+import sys
 
-from vtkmodules.vtkCommonDataModel import vtkBox
-from vtkmodules.vtkFiltersModeling import vtkLinearSubdivisionFilter
-from vtkcartan import (vtkAsRigidAsPossibleDeformation, vtkCurvatureError, vtkDiscreteForms,
-                       vtkFrameReconstruction, vtkHandleMotion, vtkLaplacianDeformation,
-                       vtkMarkHandle, vtkMultiresolutionDeformation, vtkPoissonDeformation,
-                       vtkPrepareSurface, vtkRestoreSurface, vtkRotationInvariantDeformation,
-                       vtkShapePreservingDeformation, vtkSimilarityDeformation, vtkSurfaceMorph,
-                       vtkVolumeChange)
+import vtkcartan
 
-import cartan_testing
+import scan
+
+DEFORMATIONS = ("RotationInvariant", "ShapePreserving", "Poisson", "AsRigidAsPossible",
+                "Multiresolution", "Laplacian", "Similarity")
 
 
-def mark(source, handle, low, high):
-    """Marks the points between two parts of the height."""
-    bounds = source.GetOutputDataObject(0).GetBounds()
-    height = bounds[3] - bounds[2]
-    box = vtkBox()
-    box.SetBounds(bounds[0] - 1, bounds[1] + 1, bounds[2] + low * height,
-                  bounds[2] + high * height, bounds[4] - 1, bounds[5] + 1)
-    marked = vtkMarkHandle()
-    marked.SetInputConnection(source.GetOutputPort())
-    marked.SetRegion(box)
-    marked.SetHandleId(handle)
-    marked.SetGrowDistance(1e-3 * height)
-    marked.Update()
-    return marked
+def resident(which):
+    """VmRSS, the memory that the process has in use, or VmHWM, its maximum; in bytes."""
+    with open("/proc/self/status", encoding="ascii") as status:
+        for line in status:
+            if line.startswith(which + ":"):
+                return 1024 * int(line.split()[1])
+    raise RuntimeError(which + " is not in /proc/self/status")
+
+
+def in_process(action):
+    """Runs action() in a process of its own, so that nothing of it remains here."""
+    sys.stdout.flush()
+    child = os.fork()
+    if child == 0:
+        action()
+        sys.stdout.flush()
+        os._exit(0)
+    os.waitpid(child, 0)
+
+
+def connected(kind, *connections, **properties):
+    """A filter with the outputs of others on its ports."""
+    filter = getattr(vtkcartan, "vtk" + kind)()
+    for port, source in enumerate(connections):
+        source, output = source if isinstance(source, tuple) else (source, 0)
+        filter.AddInputConnection(port, source.GetOutputPort(output))
+    for name, value in properties.items():
+        getattr(filter, "Set" + name)(value)
+    return filter
+
+
+def bending(kind, marked):
+    motion = vtkcartan.vtkHandleMotion()
+    motion.SetAxis(1, 0, 0)
+    motion.SetAngle(20)
+    filter = connected(kind + "Deformation", marked)
+    filter.SetHandleMotion(2, motion)
+    return filter
+
+
+def morph(method, marked, bent):
+    filter = connected("SurfaceMorph", marked, Parameter=0.5)
+    getattr(filter, "SetMethodTo" + method)()
+    filter.AddInputConnection(bent.GetOutputPort())
+    return filter
+
+
+def cases(marked, forms, bent):
+    """Names, and what makes the filter."""
+    yield "vtkMarkHandle, growing", lambda: connected(
+        "MarkHandle", marked, HandleId=3, GrowDistance=1e-3, Region=marked.GetRegion())
+    yield "vtkDiscreteForms", lambda: connected("DiscreteForms", marked)
+    yield "vtkFrameReconstruction", lambda: connected("FrameReconstruction", marked, (forms, 1))
+    yield "vtkPrepareSurface", lambda: connected("PrepareSurface", marked)
+    yield "vtkRestoreSurface", lambda: connected(
+        "RestoreSurface", connected("PrepareSurface", marked), marked)
+    for kind in DEFORMATIONS:
+        yield f"vtk{kind}Deformation", lambda kind=kind: bending(kind, marked)
+    for kind in ("CurvatureError", "VolumeChange"):
+        yield "vtk" + kind, lambda kind=kind: connected(kind, bent, marked)
+    for method in ("DiscreteForms", "Isometric", "DeformationGradient", "Linear"):
+        yield "vtkSurfaceMorph, " + method, lambda method=method: morph(method, marked, bent)
 
 
 def main():
-    scan = cartan_testing.read_off(os.path.join(cartan_testing.mesh_dir(), "armadillo.off"))
-    fine = vtkLinearSubdivisionFilter()
-    fine.SetInputData(scan)
-    fine.Update()
+    fine = scan.armadillo(int(sys.argv[1]) if len(sys.argv) > 1 else 1)
     points = fine.GetOutput().GetNumberOfPoints()
-    marked = mark(mark(fine, 1, -0.1, 0.1), 2, 0.9, 1.1)
-    motion = vtkHandleMotion()
-    motion.SetAxis(1, 0, 0)
-    motion.SetAngle(20)
+    marked = fine
+    for handle, low, high in ((1, -0.1, 0.1), (2, 0.9, 1.1)):
+        marked = scan.mark_heights(marked, handle, low, high)
+        marked.Update()
+    print(f"bytes per point, {points} points{'':22s} kept    peak")
+    forms = connected("DiscreteForms", marked)
+    forms.Update()
+    bent = bending("RotationInvariant", marked)
+    bent.Update()
+    # Their own share of the surface's mesh would hide it from the peaks.
+    for filter in (forms, bent, marked):
+        filter.ReleaseKeptMemory()
 
-    def row(name, filter):
-        print(f"{name:42s} {filter.GetKeptMemory() * 1e6 / points:7.0f}")
+    def measure(name, make):
+        filter = make()
+        ctypes.CDLL(None).malloc_trim(0)  # what is free already would serve again
+        with open("/proc/self/clear_refs", "w", encoding="ascii") as peak:
+            peak.write("5")  # VmHWM begins anew
+        before = resident("VmRSS")
+        filter.Update()
+        print(f"{name:42s} {filter.GetKeptMemory() * 1e6 / points:8.0f}"
+              f"{(resident('VmHWM') - before) / points:8.0f}")
 
-    print(f"bytes per point, {points} points")
-    row("vtkMarkHandle", marked)
-    forms = vtkDiscreteForms()
-    forms.SetInputConnection(marked.GetOutputPort())
-    rebuilt = vtkFrameReconstruction()
-    rebuilt.SetInputConnection(marked.GetOutputPort())
-    rebuilt.SetFormsConnection(forms.GetOutputPort(1))
-    prepared = vtkPrepareSurface()
-    prepared.SetInputConnection(marked.GetOutputPort())
-    restored = vtkRestoreSurface()
-    restored.SetInputConnection(prepared.GetOutputPort())
-    restored.SetOriginalConnection(marked.GetOutputPort())
-    for filter in (forms, rebuilt, prepared, restored):
-        filter.Update()
-        row(filter.GetClassName(), filter)
-    bent = None
-    for kind in (vtkRotationInvariantDeformation, vtkShapePreservingDeformation,
-                 vtkPoissonDeformation, vtkAsRigidAsPossibleDeformation,
-                 vtkMultiresolutionDeformation, vtkLaplacianDeformation,
-                 vtkSimilarityDeformation):
-        filter = kind()
-        filter.SetInputConnection(marked.GetOutputPort())
-        filter.SetHandleMotion(2, motion)
-        filter.Update()
-        row(filter.GetClassName(), filter)
-        bent = bent or filter
-    for kind in (vtkCurvatureError, vtkVolumeChange):
-        measure = kind()
-        measure.SetInputConnection(bent.GetOutputPort())
-        measure.SetReferenceConnection(marked.GetOutputPort())
-        measure.Update()
-        row(measure.GetClassName(), measure)
-    for method in ("DiscreteForms", "Isometric", "DeformationGradient", "Linear"):
-        morph = vtkSurfaceMorph()
-        getattr(morph, "SetMethodTo" + method)()
-        morph.AddInputConnection(marked.GetOutputPort())
-        morph.AddInputConnection(bent.GetOutputPort())
-        morph.SetParameter(0.5)
-        morph.Update()
-        row("vtkSurfaceMorph, " + method, morph)
+    for name, make in cases(marked, forms, bent):
+        in_process(lambda: measure(name, make))
 
 
 main()

@@ -6,16 +6,13 @@ Run it with pvpython and the variables of the tests, CARTAN_MESH_DIR and PYTHONP
 are those of the processor, so that other programs do not count; names of filters restrict it:
 progress.py vtkPoissonDeformation.
 """
-import os
 import sys
 import time
 
-from vtkmodules.vtkFiltersModeling import vtkLinearSubdivisionFilter
 import vtkcartan
-from vtkcartan import vtkHandleMotion, vtkMarkHandle
-from vtkmodules.vtkCommonDataModel import vtkBox
+from vtkcartan import vtkHandleMotion
 
-import cartan_testing
+import scan
 
 DEFORMATIONS = ("RotationInvariant", "ShapePreserving", "Poisson", "AsRigidAsPossible",
                 "Multiresolution", "Laplacian", "Similarity")
@@ -43,20 +40,6 @@ class Watch:
         self.last, self.value = now, value
 
 
-def mark(source, handle, low, high):
-    """Marks the points between two parts of the height."""
-    bounds = source.GetOutputDataObject(0).GetBounds()
-    height = bounds[3] - bounds[2]
-    box = vtkBox()
-    box.SetBounds(bounds[0] - 1, bounds[1] + 1, bounds[2] + low * height,
-                  bounds[2] + high * height, bounds[4] - 1, bounds[5] + 1)
-    marked = vtkMarkHandle()
-    marked.SetInputConnection(source.GetOutputPort())
-    marked.SetRegion(box)
-    marked.SetHandleId(handle)
-    return marked
-
-
 def chosen(name):
     return len(sys.argv) < 2 or name.split(",")[0] in sys.argv[1:]
 
@@ -67,17 +50,13 @@ def watch(name, filter):
 
 
 def main():
-    scan = cartan_testing.read_off(os.path.join(cartan_testing.mesh_dir(), "armadillo.off"))
-    fine = vtkLinearSubdivisionFilter()
-    fine.SetInputData(scan)
-    fine.SetNumberOfSubdivisions(2)
-    fine.Update()
+    fine = scan.armadillo(2)
     print(f"{fine.GetOutput().GetNumberOfPoints()} points")
-    first = mark(fine, 1, -0.1, 0.1)
+    first = scan.mark_heights(fine, 1, -0.1, 0.1)
     if chosen("vtkMarkHandle"):
         Watch("vtkMarkHandle", first)
     first.Update()
-    marked = mark(first, 2, 0.9, 1.1)
+    marked = scan.mark_heights(first, 2, 0.9, 1.1)
     marked.Update()
     motion = vtkHandleMotion()
     motion.SetAxis(1, 0, 0)

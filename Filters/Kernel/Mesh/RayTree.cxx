@@ -14,6 +14,8 @@ namespace
 constexpr int TrianglesPerLeaf = 4;
 /// Halving 2^31 triangles ends well before.
 constexpr int LargestDepth = 32;
+/// Reports progress after so many triangles.
+constexpr int TrianglesPerReport = 1 << 15;
 constexpr double Nowhere = std::numeric_limits<double>::infinity();
 }
 
@@ -104,7 +106,7 @@ struct RayTree::Ray
   int Z = 2;
 };
 
-RayTree::RayTree(const Triangles& triangles, const Points& points)
+RayTree::RayTree(const Triangles& triangles, const Points& points, const ExecutionContext& context)
   : Center(Eigen::Vector3d::Zero())
 {
   const auto size = static_cast<int>(triangles.rows());
@@ -131,7 +133,7 @@ RayTree::RayTree(const Triangles& triangles, const Points& points)
   std::iota(this->Ids.begin(), this->Ids.end(), 0);
   // Far above the rounding of Enter() and Meet(), so that no box is left out
   // that holds what the ray meets.
-  this->Build(boxes, 0, size, 1e-12 * all.diagonal().norm());
+  this->Build(boxes, 0, size, 1e-12 * all.diagonal().norm(), context);
   this->Corners.resize(size);
   for (int i = 0; i < size; ++i)
   {
@@ -143,7 +145,8 @@ RayTree::RayTree(const Triangles& triangles, const Points& points)
   }
 }
 
-void RayTree::Build(std::vector<Eigen::AlignedBox3d>& boxes, int begin, int end, double padding)
+void RayTree::Build(std::vector<Eigen::AlignedBox3d>& boxes, int begin, int end, double padding,
+  const ExecutionContext& context)
 {
   Node node;
   Eigen::AlignedBox3d centers;
@@ -168,9 +171,13 @@ void RayTree::Build(std::vector<Eigen::AlignedBox3d>& boxes, int begin, int end,
   const int middle = begin + (end - begin) / 2;
   std::nth_element(this->Ids.begin() + begin, this->Ids.begin() + middle, this->Ids.begin() + end,
     [&](int a, int b) { return boxes[a].center()[axis] < boxes[b].center()[axis]; });
-  this->Build(boxes, begin, middle, padding);
+  this->Build(boxes, begin, middle, padding, context);
   this->Nodes[index].First = static_cast<int>(this->Nodes.size());
-  this->Build(boxes, middle, end, padding);
+  this->Build(boxes, middle, end, padding, context);
+  if (end - begin > TrianglesPerReport && middle - begin <= TrianglesPerReport)
+  {
+    context.Report(static_cast<double>(end) / static_cast<double>(boxes.size()));
+  }
 }
 
 RayHit RayTree::FirstHit(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const

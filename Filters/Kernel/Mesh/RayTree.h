@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/ExecutionContext.h"
 #include "Base/Types.h"
 
 #include <vector>
@@ -22,7 +23,7 @@ class RayTree
 {
 public:
   /// Keeps a copy of the corners. Coordinates are finite. O(#T log #T).
-  RayTree(const Triangles& triangles, const Points& points);
+  RayTree(const Triangles& triangles, const Points& points, const ExecutionContext& context = {});
 
   /// The triangle that the ray from a point in a unit direction meets first, on
   /// either side, its start included; of several at the same distance the one
@@ -40,7 +41,8 @@ private:
   };
   struct Ray;
 
-  void Build(std::vector<Eigen::AlignedBox3d>& boxes, int begin, int end, double padding);
+  void Build(std::vector<Eigen::AlignedBox3d>& boxes, int begin, int end, double padding,
+    const ExecutionContext& context);
 
   Eigen::Vector3d Center;               // what the coordinates below are relative to
   std::vector<Node> Nodes;              // those below a node follow it
