@@ -244,6 +244,22 @@ TEST(MorphOfCoarseMeshes, WarnsOfLengthsThatAreOff)
   EXPECT_LT(byHinges.EdgeMax, 0.6 * figures.EdgeMax);
 }
 
+TEST(MorphOfCoarseMeshes, TheIsometricMorphWarnsOfLengthsToo)
+{
+  const Shape tube = shapes::OpenCylinder(8, 12, 1.0, 6.0);
+  const KeyFrames keys = Keys(tube, { tube.Positions, morphshapes::Bend(tube, 400.0, 0.0, 6.0) });
+  cartan::IsometricMorph morph(keys);
+  const MorphFigures figures = MeasureMorph(keys, morph.Evaluate(0.7, {}), 0.7);
+  EXPECT_GT(figures.EdgeMax, 0.25);
+  const std::string figure = "by " + std::to_string(std::lround(100 * figures.EdgeMax)) + " %";
+  for (const std::string& part : { std::string("by more than 25 %"), figure })
+  {
+    EXPECT_NE(morph.GetWarning().find(part), std::string::npos) << morph.GetWarning();
+  }
+  morph.Evaluate(1.0, {});
+  EXPECT_EQ(morph.GetWarning(), "");
+}
+
 TEST(MorphOfCoarseMeshes, KeepsLengthsWithAKeyFrameInBetween)
 {
   const Shape shape = shapes::RealMesh("anchor");

@@ -5,6 +5,7 @@
 #include "Differential/DiscreteForms.h"
 #include "Differential/FrameReconstruction.h"
 #include "Differential/Laplacian.h"
+#include "Morph/LengthErrors.h"
 #include "Morph/RingFrames.h"
 
 #include <algorithm>
@@ -60,14 +61,14 @@ void DiscreteFormsMorph::InterpolateLengths(const KeyFrames& keys)
     }
   }
   const Eigen::VectorXd means = lengths.rowwise().mean();
-  this->Negligible = negligible * means.mean();
+  const double shortest = negligible * means.mean();
   this->Weights = Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges());
-  for (Eigen::Index e = 0; e<numberOfEdges&& this->Negligible> 0.0; ++e)
+  for (Eigen::Index e = 0; e < numberOfEdges && shortest > 0.0; ++e)
   {
     // Relative to the mean, so that the unit of length does not matter.
     const int d = this->Directed[e];
     this->Weights[d] = this->Weights[mesh.Twin(d)] =
-      this->Negligible / negligible / std::max(means[e], this->Negligible);
+      shortest / negligible / std::max(means[e], shortest);
   }
   this->KeyLengths = KeyInterpolation(this->Parameters, std::move(lengths));
 }
@@ -278,36 +279,17 @@ Matrices DiscreteFormsMorph::LinearFrames(
 void DiscreteFormsMorph::WarnOfLengths(
   double t, const Eigen::VectorXd& lengths, const Points& positions)
 {
-  constexpr double bound = 0.25;
-  IdSample ends;
-  double worst = 0.0;
-  int worstEdge = 0;
+  Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> edges(lengths.size(), 2);
   for (Eigen::Index e = 0; e < lengths.size(); ++e)
   {
     const int d = this->Directed[e];
-    const double length =
-      (positions.row(this->Mesh->Neighbor(d)) - positions.row(this->Mesh->Origin(d))).norm();
-    const double error = std::abs(length - lengths[e]) / std::max(lengths[e], this->Negligible);
-    if (error > bound)
-    {
-      ends.Add(this->Mesh->Origin(d));
-    }
-    if (error > worst)
-    {
-      worst = error;
-      worstEdge = d;
-    }
+    edges.row(e) << this->Mesh->Origin(d), this->Mesh->Neighbor(d);
   }
-  if (!ends.IsEmpty())
+  const std::string errors = DescribeLengthErrors(t, edges, lengths, positions);
+  if (!errors.empty())
   {
-    this->Warning += std::string(this->Warning.empty() ? "" : " ") + "At the parameter " +
-      std::to_string(t) + " the length of " + ends.Describe("edge", "edges") +
-      ", ids of the first end points, is off that between the key frames by more than 25 %; from "
-      "point " +
-      std::to_string(this->Mesh->Origin(worstEdge)) + " to point " +
-      std::to_string(this->Mesh->Neighbor(worstEdge)) + " it is by " +
-      std::to_string(std::lround(100.0 * worst)) +
-      " %. Try the Isometric method, or add a key frame in between.";
+    this->Warning += (this->Warning.empty() ? "" : " ") + errors +
+      " Try the Isometric method, or add a key frame in between.";
   }
 }
 

@@ -95,7 +95,6 @@ private:
   FrameSolver Solver;
   std::vector<int> Directed;   // #E, a directed edge of each
   Eigen::VectorXd Weights;     // #D
-  double Negligible = 0.0;     // the length below which edges count as this long
   KeyInterpolation KeyLengths; // #E
   KeyInterpolation KeyRings;   // 3 #D, the edges in the frames of their origins
   Matrices MeanTransitions;    // #E x 9, of Transitions::Rotations

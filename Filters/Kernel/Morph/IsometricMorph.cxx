@@ -3,6 +3,7 @@
 
 #include "Differential/Laplacian.h"
 #include "Mesh/TriangleShape.h"
+#include "Morph/LengthErrors.h"
 #include "Morph/LengthPolish.h"
 
 #include <cmath>
@@ -262,6 +263,11 @@ Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
     // Nothing else is held: where the tree begins depends on the order of triangles.
     PolishLengths(this->Topology.Edges, lengths, this->IsUnstitched, this->Options.LengthPolish,
       points, context.Part(0.7, 1.0));
+  }
+  const std::string errors = DescribeLengthErrors(t, this->Topology.Edges, lengths, points);
+  if (!errors.empty())
+  {
+    this->Warning += (this->Warning.empty() ? "" : " ") + errors + " Add a key frame in between.";
   }
   return points;
 }
