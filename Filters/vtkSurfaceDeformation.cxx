@@ -358,9 +358,13 @@ void vtkSurfaceDeformation::Execute(cartan::FilterRun& run)
 
 std::string vtkSurfaceDeformation::DescribeRemedy(cartan::ErrorCode code) const
 {
-  if (code == ErrorCode::NotPositiveDefinite && this->LaplacianWeights != UNIFORM)
+  // What is held next to nothing leaves a matrix that is nearly singular, and so do
+  // differences of high order between handles that are far from each other.
+  if (code == ErrorCode::NotPositiveDefinite)
   {
-    return " Uniform LaplacianWeights avoid that.";
+    return this->ConstraintWeightArrayName.empty()
+      ? " Hold more points, or use a method of order 1, such as Rotation Invariant Deformation."
+      : " Raise constraint weights near 0.";
   }
   return code == ErrorCode::SolverFailed ? " Choose another Solver." : "";
 }

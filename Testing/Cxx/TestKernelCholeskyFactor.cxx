@@ -162,9 +162,6 @@ TEST(CholeskyFactor, EachStatusHasAMessageOfItsOwn)
     {
       EXPECT_EQ(error.GetCode(), code);
       EXPECT_NE(std::string(error.what()).find("77 unknowns"), std::string::npos);
-      // Only the matrix's own fault is mended at the matrix.
-      EXPECT_EQ(std::string(error.what()).find("Repair") != std::string::npos,
-        status == FactorStatus::NotPositiveDefinite);
       messages.insert(error.what());
     }
   }

@@ -330,3 +330,39 @@ TEST(CommonMotion, LeavesWhatNoHandleReaches)
   }
 }
 }
+
+TEST(SoftHandles, MeetInTheMiddleOrAreRefusedWhereRoundingLeavesNothingOfThem)
+{
+  // One of two ends of equal size is shifted. The less its points are held, the more
+  // the bar moves as a whole, at last half of the way.
+  const Eigen::RowVector3d shift(1.0, 0.0, 0.0);
+  HandleMotion motion;
+  motion.Translation = shift.transpose();
+  int refused = 0;
+  auto methods = deformers::All();
+  methods.erase("LaplacianImplicit"); // turns as a whole, too, which brings it closer
+  methods.erase("SmoothedRotations"); // does not converge in its sweeps
+  for (const auto& [name, make] : methods)
+  {
+    for (const double weight : { 1e-4, 1e-6, 1e-7, 1e-8, 1e-12, 1e-20 })
+    {
+      HandleProblem problem = Bar(BothEnds, { 2 });
+      problem.SoftWeights.setConstant(problem.Rest->rows(), weight);
+      SCOPED_TRACE(name + ", " + std::to_string(std::log10(weight)));
+      try
+      {
+        const auto deformer = make(problem, {});
+        const Points moved = Deform(*deformer, { motion }).Positions;
+        const double error =
+          (moved - (problem.Rest->rowwise() + 0.5 * shift)).cwiseAbs().maxCoeff();
+        EXPECT_TRUE(error < 1e-3 || !deformer->GetWarning().empty()) << error;
+      }
+      catch (const cartan::Error& error)
+      {
+        EXPECT_LT(weight, 1e-4) << error.what();
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 3 * static_cast<int>(methods.size()) - 1); // at 1e-8 and below
+}

@@ -26,9 +26,7 @@ void RequireFactor(FactorStatus status, Eigen::Index unknowns)
       return;
     case FactorStatus::NotPositiveDefinite:
       throw Error(ErrorCode::NotPositiveDefinite,
-        system +
-          "cannot be factorized: up to rounding it is not positive definite. Thin triangles and "
-          "triangles without area can cause that. Repair them (Prepare Surface).");
+        system + "cannot be factorized: up to rounding it is not positive definite.");
     case FactorStatus::TooLarge:
       throw Error(ErrorCode::TooLarge,
         system +

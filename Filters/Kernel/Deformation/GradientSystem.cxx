@@ -330,6 +330,7 @@ void GradientSystem::Factorize(const TriangleMesh& mesh, const ExecutionContext&
   }
   anchors.Stiffness = this->Stiffness;
   this->System.Factorize(matrix, anchors, context.Part(0.3, 1.0));
+  RequireTranslations(this->System, anchors);
   this->Values.setZero(size, 3);
 }
 

@@ -107,6 +107,36 @@ Eigen::VectorXd SquaredSoftWeights(
   return squared;
 }
 
+void RequireTranslations(const AnchoredSystem& system, const Anchors& anchors)
+{
+  if (anchors.Stiffness.isZero(0.0))
+  {
+    return;
+  }
+  Field translation = Field::Ones(static_cast<Eigen::Index>(anchors.Vertices.size()), 1);
+  for (std::size_t i = 0; i < anchors.Vertices.size(); ++i)
+  {
+    translation(static_cast<Eigen::Index>(i), 0) = anchors.Vertices[i] < 0 ? 0.0 : 1.0;
+  }
+  system.Interpolate(translation);
+  IdSample lost;
+  for (std::size_t i = 0; i < anchors.Vertices.size(); ++i)
+  {
+    // Of the way of the handles: less is not seen.
+    const double error = std::abs(translation(static_cast<Eigen::Index>(i), 0) - 1.0);
+    if (anchors.Vertices[i] >= 0 && !(error < 1e-4))
+    {
+      lost.Add(anchors.Vertices[i]);
+    }
+  }
+  if (!lost.IsEmpty())
+  {
+    throw Error(ErrorCode::SingularSystem,
+      "The system is singular up to rounding: " + lost.Describe("point", "points") +
+        " in parts that next to nothing holds. Raise constraint weights near 0.");
+  }
+}
+
 bool StoresHandleFields(const HandleProblem& problem)
 {
   const std::set<int> handles(problem.Handle.begin(), problem.Handle.end());
@@ -199,8 +229,10 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
   }
   context.Report(0.1);
 
+  const Anchors anchors = this->GetAnchors();
   this->System.Factorize(
-    Laplacian(mesh, *edgeWeights, this->Vertices), this->GetAnchors(), context.Part(0.1, 1.0));
+    Laplacian(mesh, *edgeWeights, this->Vertices), anchors, context.Part(0.1, 1.0));
+  RequireTranslations(this->System, anchors);
 }
 
 Anchors HandleLaplacian::GetAnchors() const

@@ -24,6 +24,12 @@ std::vector<char> UnknownVertices(const HandleProblem& problem, Hold hold);
 Eigen::VectorXd SquaredSoftWeights(
   const HandleProblem& problem, const std::vector<char>& isUnknown, Hold hold);
 
+/// Throws Error(SingularSystem) where rounding leaves nothing of soft anchors, because
+/// all that hold a part have weights near 0: then a common translation, which every
+/// such system follows, does not come out. Unknowns without a vertex (-1 in
+/// Anchors::Vertices) are 0 in it.
+void RequireTranslations(const AnchoredSystem& system, const Anchors& anchors);
+
 /// Index of each vertex's handle in HandleProblem::Moving, -1 for pinned and
 /// free vertices: #V.
 std::vector<int> MovingHandleOfVertices(const HandleProblem& problem);
