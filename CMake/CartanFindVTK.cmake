@@ -6,7 +6,8 @@ set(paraview_components RemotingCore pqApplicationComponents)
 set(vtk_components
   CommonCore CommonDataModel CommonExecutionModel CommonMath CommonSystem
   FiltersCore FiltersExtraction ParallelCore
-  CommonComputationalGeometry CommonTransforms FiltersSources IOXML TestingCore # the tests
+  CommonComputationalGeometry CommonTransforms FiltersGeometry FiltersSources IOXML # the tests
+  TestingCore
   WrappingPythonCore)
 
 if (NOT DEFINED CARTAN_BUILD_PLUGIN)

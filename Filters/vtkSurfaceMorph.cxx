@@ -277,9 +277,8 @@ void vtkSurfaceMorph::RequireKeyFrames(cartan::FilterRun& run) const
   if (IsBlockOf(state.Composite, vtkPolyData::SafeDownCast(run.InputObject())))
   {
     throw Error(ErrorCode::BadInput,
-      "The input is a composite data set: give its surfaces one by one (Extract Block), or as "
-      "one "
-      "(Merge Blocks, then Extract Surface).");
+      "The input is a composite data set: make a surface of it (Merge Blocks, then Extract "
+      "Surface), or one of each of its blocks (Extract Block first).");
   }
   if (state.Parameters.size() < 2)
   {

@@ -24,6 +24,7 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <vector>
 
 vtkStandardNewMacro(vtkVolumeChange);
@@ -145,9 +146,15 @@ struct Changes
 /// How to close what looks closed; empty if nothing does.
 std::string DescribeBorders(const cartan::CoincidentBorders& borders)
 {
-  return borders.IsEmpty() ? ""
-                           : "; " + std::to_string(borders.NumberOfEdges) +
-      " border edges coincide: merge their points (Prepare Surface) to close it";
+  if (borders.IsEmpty())
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text << "; " << borders.NumberOfEdges
+       << " border edges coincide: merge their points (Prepare Surface, Tolerance "
+       << borders.RelativeTolerance << ") to close it";
+  return text.str();
 }
 
 /// The volume of everything; NaN unless all components are closed.

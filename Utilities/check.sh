@@ -2,7 +2,7 @@
 # Everything that must hold before a change is accepted, or the stages that are named:
 #
 #   format   clang-format on every C++ file
-#   layers   what may include what
+#   layers   what may include what, how long it may be, and that advice has tests
 #   doxygen  the class reference, without warnings
 #   tests    Utilities/test.sh: all tests of a release build, warnings are errors
 #   tidy     clang-tidy on the kernel
@@ -39,6 +39,7 @@ layers()
 {
   Utilities/check_layers.py
   Utilities/check_sizes.py
+  Utilities/check_advice.py
 }
 
 doxygen()

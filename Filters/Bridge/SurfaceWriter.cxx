@@ -140,7 +140,7 @@ std::string UpdateNormals(vtkDataSetAttributes* attributes, vtkIdType count,
     attributes->RemoveArray(name.c_str());
     return "The normals \"" + name + "\" have " + std::to_string(old->GetNumberOfTuples()) +
       " tuples for " + std::to_string(count) + " " + what +
-      " and are left out: compute them anew (Surface Normals).";
+      " and are left out: compute them anew (Surface Normals, Splitting off).";
   }
   const Points after = compute(positions);
   if (rest)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Deformation/AsRigidAsPossibleDeformer.h"
 
+#include "AdviceWords.h"
 #include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/ShapePreservingDeformer.h"
@@ -220,7 +221,9 @@ TEST(AsRigidAsPossibleDeformer, SaysUntilWhenSmoothedRotationsMove)
   EXPECT_NE(
     warning(InitialGuess::RestShape, 10).find("have not settled: the last of 10 iterations"),
     std::string::npos);
-  // Both pieces of advice.
+  EXPECT_NE(warning(InitialGuess::RestShape, 10)
+              .find(shapes::Advice("Raise MaximumIterations, or guess SHAPE_PRESERVING.")),
+    std::string::npos);
   EXPECT_EQ(warning(InitialGuess::RestShape, 300), "");
   EXPECT_EQ(warning(InitialGuess::ShapePreserving, 10), "");
 }

@@ -475,7 +475,7 @@ TEST(MorphVolume, LeavesOpenSurfacesAlone)
   const Shape both = shapes::Union(plane, bar);
   KeyFrames keys = Keys(both, { both.Positions, 2.0 * both.Positions });
   const cartan::MorphVolume volume(keys);
-  EXPECT_NE(volume.GetWarning().find("1 component (id 0)"), std::string::npos)
+  EXPECT_NE(volume.GetWarning().find("1 open component (id 0)"), std::string::npos)
     << volume.GetWarning();
   Points positions = 1.1 * both.Positions;
   EXPECT_EQ(volume.Close(0.5, positions), "");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkCurvatureError.h"
 
+#include "AdviceWords.h"
 #include "TestSurfaces.h"
 
 #include <gtest/gtest.h>
@@ -186,6 +187,10 @@ TEST(CurvatureOfSources, CapsOfACylinderAreFlat)
 
 TEST(CurvatureOfSources, ThreeRowsAsTheWarningAsksForDetermineATube)
 {
+  EXPECT_NE(MeasureTube(12, 1).Warning.find(shapes::Advice(
+              "For reliable values use at least three evenly spaced rows of points in every "
+              "direction.")),
+    std::string::npos);
   for (const int sides : { 8, 12, 24 })
   {
     const Result result = MeasureTube(sides, 8);
@@ -416,7 +421,10 @@ TEST(CurvatureOfSources, SharpEdgesOfAConeAreFlagged)
 
 TEST(CurvatureOfSources, SmallerTrianglesAsTheWarningAsksDetermineATorus)
 {
-  EXPECT_NE(MeasureTorus(25, 16).Warning, "");
+  EXPECT_NE(MeasureTorus(25, 16).Warning.find(shapes::Advice(
+              "For reliable values use smaller triangles where the surface bends, and smooth "
+              "noise.")),
+    std::string::npos);
   const Result fine = MeasureTorus(50, 40);
   EXPECT_EQ(fine.Warning, "");
   EXPECT_LT(fine.LargestTrusted, 0.05);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "AdviceWords.h"
 #include "HandleShapes.h"
 #include "RealMeshes.h"
 #include "VtkTestHelpers.h"
@@ -100,6 +101,11 @@ TEST(LaplacianRounds, EachAdviceOfTheWarningWorks)
   const BentMesh mesh("boeing", 40.0);
   const auto [points, warnings] = AfterRounds(mesh, 5);
   ASSERT_TRUE(IsUnsettled(warnings)) << warnings;
+  EXPECT_NE(warnings.find(shapes::Advice(
+              "Rotation Invariant Deformation and Rotations None solve without rounds; merge "
+              "pieces that belong together (Prepare Surface).")),
+    std::string::npos)
+    << warnings;
   const auto size = [](const cartan::Points& p)
   { return (p.colwise().maxCoeff() - p.colwise().minCoeff()).norm(); };
   EXPECT_GT(size(points), 2.0 * mesh.Size);

@@ -3,6 +3,7 @@
 
 #include "Kernel/Measure/ComponentVolumes.h"
 #include "MorphShapes.h"
+#include "TimeSource.h"
 #include "VtkTestHelpers.h"
 #include "vtkVolumeChange.h"
 
@@ -20,6 +21,7 @@ using cartan::Points;
 using shapes::Shape;
 using vtktest::MakePolyData;
 using vtktest::PointsOf;
+using vtktest::TimeSource;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace
@@ -30,50 +32,6 @@ Shape BarShape()
 {
   return shapes::Bar(3, 3, 18, { 1, 1, 6 });
 }
-
-/// Surfaces at time steps, made on request.
-class TimeSource : public vtkPolyDataAlgorithm
-{
-public:
-  static TimeSource* New() { VTK_STANDARD_NEW_BODY(TimeSource); }
-  vtkTypeMacro(TimeSource, vtkPolyDataAlgorithm);
-
-  void SetSteps(std::vector<double> times, std::vector<vtkSmartPointer<vtkPolyData>> surfaces)
-  {
-    this->Times = std::move(times);
-    this->Surfaces = std::move(surfaces);
-    this->Modified();
-  }
-  std::vector<double> Requests;
-
-protected:
-  TimeSource() { this->SetNumberOfInputPorts(0); }
-
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector) override
-  {
-    const double range[2] = { this->Times.front(), this->Times.back() };
-    vtkInformation* info = outputVector->GetInformationObject(0);
-    info->Set(Pipeline::TIME_STEPS(), this->Times.data(), static_cast<int>(this->Times.size()));
-    info->Set(Pipeline::TIME_RANGE(), range, 2);
-    return 1;
-  }
-  int RequestData(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector) override
-  {
-    const double time = outputVector->GetInformationObject(0)->Get(Pipeline::UPDATE_TIME_STEP());
-    this->Requests.push_back(time);
-    const auto step = std::find(this->Times.begin(), this->Times.end(), time);
-    EXPECT_NE(step, this->Times.end()) << "no time step: " << time;
-    vtkPolyData::GetData(outputVector)
-      ->DeepCopy(this->Surfaces[static_cast<std::size_t>(step - this->Times.begin())]);
-    return 1;
-  }
-
-private:
-  std::vector<double> Times;
-  std::vector<vtkSmartPointer<vtkPolyData>> Surfaces;
-};
 
 struct Fixture
 {

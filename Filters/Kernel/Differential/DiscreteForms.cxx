@@ -260,7 +260,8 @@ Matrices VertexFrames(
     throw Error(ErrorCode::BadInput,
       "The surface has " + withoutNormal.Describe("point", "points") +
         " without a normal, because their triangles have no area or fold back on each other: "
-        "repair them with vtkPrepareSurface (Prepare Surface), Tolerance above 0.");
+        "move these points or their neighbors, remove their triangles, or, where points coincide, "
+        "merge them with vtkPrepareSurface (Prepare Surface).");
   }
   Matrices frames(mesh.NumberOfVertices(), 9);
   context.For(mesh.NumberOfVertices(),

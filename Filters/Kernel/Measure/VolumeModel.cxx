@@ -173,7 +173,7 @@ void FindEnclosingComponents(const TriangleMesh& mesh, const Points& points, Vol
   {
     AddSentence(model.Warning,
       "No volume is preserved in " + open.Describe("open component", "open components") +
-        ": close the surface (Fill Holes).");
+        ": close the surface (Prepare Surface, Maximum Hole Edges).");
   }
   if (!flat.IsEmpty())
   {

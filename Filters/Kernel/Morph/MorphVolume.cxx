@@ -16,31 +16,42 @@ MorphVolume::MorphVolume(const KeyFrames& keys, const ExecutionContext& context)
 {
   const TriangleMesh& mesh = *this->Mesh;
   Field volumes(mesh.NumberOfComponents(), keys.Positions.size());
+  std::vector<char> isClosed(mesh.NumberOfComponents(), 0);
   for (Eigen::Index k = 0; k < volumes.cols(); ++k)
   {
     const std::vector<ComponentVolume> components = MeasureComponents(mesh, keys.Positions[k]);
     for (std::size_t c = 0; c < components.size(); ++c)
     {
       const auto row = static_cast<Eigen::Index>(c);
+      isClosed[c] = components[c].IsClosed;
       volumes(row, k) = components[c].Volume;
       this->TakesPart[c] = this->TakesPart[c] && components[c].EnclosesVolume() &&
         volumes(row, k) * volumes(row, 0) > 0.0;
     }
   }
   this->Volumes = KeyInterpolation(keys.Parameters, std::move(volumes));
+  // Being open is the same in all key frames, since that is connectivity.
+  IdSample open;
   IdSample left;
   for (std::size_t c = 0; c < this->TakesPart.size(); ++c)
   {
     if (!this->TakesPart[c])
     {
-      left.Add(static_cast<long long>(c));
+      (isClosed[c] ? left : open).Add(static_cast<long long>(c));
     }
+  }
+  if (!open.IsEmpty())
+  {
+    this->Warning = "The volume of " + open.Describe("open component", "open components") +
+      " is not adjusted: fill the holes before the surface is deformed to the key frames (Prepare "
+      "Surface, Maximum Hole Edges).";
   }
   if (!left.IsEmpty())
   {
-    this->Warning = "The volume of " + left.Describe("component", "components") +
-      " is not adjusted, because in a key frame it is open, encloses nothing, or is turned inside "
-      "out against the first one: fill its holes (Prepare Surface).";
+    this->Warning += (this->Warning.empty() ? "" : " ");
+    this->Warning += "The volume of " + left.Describe("component", "components") +
+      " is not adjusted, because in a key frame it encloses nothing or is turned inside out "
+      "against the first one.";
   }
   this->Laplacian.Factorize(
     cartan::Laplacian(mesh, Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges())),
