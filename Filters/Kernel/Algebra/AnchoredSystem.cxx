@@ -56,7 +56,9 @@ void AnchoredSystem::Factorize(
 void AnchoredSystem::FactorizeFit(const SparseMatrix& laplacian, const Eigen::VectorXd& inverseMass,
   const Anchors& anchors, AnchorMode mode, const ExecutionContext& context)
 {
-  if (mode == AnchorMode::Substituted)
+  const bool isSquare = mode == AnchorMode::Substituted;
+  const SparseMatrix transposed = laplacian.transpose();
+  if (isSquare && (laplacian - transposed).norm() <= 1e-14 * laplacian.norm())
   {
     this->Factorize(laplacian, anchors, context);
     const Eigen::VectorXd mass = inverseMass.cwiseInverse();
@@ -65,9 +67,15 @@ void AnchoredSystem::FactorizeFit(const SparseMatrix& laplacian, const Eigen::Ve
     this->RightHandSide = (mass.asDiagonal() * this->RightHandSide).eval();
     return;
   }
-  const SparseMatrix weighted = inverseMass.asDiagonal() * laplacian;
-  this->Factorize(CheckedProduct(laplacian, weighted, "The system of the fit"), anchors, context);
-  this->RightHandSide = laplacian;
+  // The free unknowns' equations alone, as many as unknowns, are met exactly.
+  Eigen::VectorXd counts = Eigen::VectorXd::Ones(laplacian.rows());
+  for (Eigen::Index i = 0; isSquare && i < counts.size(); ++i)
+  {
+    counts[i] = anchors.IsHard[i] ? 0.0 : 1.0;
+  }
+  const SparseMatrix weighted = inverseMass.cwiseProduct(counts).asDiagonal() * laplacian;
+  this->Factorize(CheckedProduct(transposed, weighted, "The system of the fit"), anchors, context);
+  this->RightHandSide = transposed * counts.asDiagonal();
 }
 
 void AnchoredSystem::Solve(

@@ -47,13 +47,14 @@ public:
   void Factorize(
     const SparseMatrix& matrix, const Anchors& anchors, const ExecutionContext& context = {});
 
-  /// The same for a fit of differential coordinates: equations L x = M d of a
-  /// symmetric L, in the weight of M^-1 (`inverseMass`, #U),
+  /// The same for a fit of differential coordinates: equations L x = M d, in the
+  /// weight of M^-1 (`inverseMass`, #U),
   ///
   ///   min sum over equations of m_i |(M^-1 L x)_i - d_i|^2 + sum s |x - t|^2,
   ///
-  /// that is A = L M^-1 L and b = L d; with AnchorMode::Substituted the
-  /// equations of free unknowns alone, A = L and b = M d. Stiffness needs Soft.
+  /// that is A = L^T M^-1 L and b = L^T d; with AnchorMode::Substituted the
+  /// equations of free unknowns alone, for a symmetric L as A = L and b = M d.
+  /// Stiffness needs Soft.
   void FactorizeFit(const SparseMatrix& laplacian, const Eigen::VectorXd& inverseMass,
     const Anchors& anchors, AnchorMode mode, const ExecutionContext& context = {});
 

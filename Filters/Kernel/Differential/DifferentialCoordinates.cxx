@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Differential/DifferentialCoordinates.h"
+
+#include "Base/Bytes.h"
+#include "Differential/LaplaceOperator.h"
+#include "Mesh/Geometry.h"
+
+#include <cmath>
+
+namespace cartan
+{
+namespace
+{
+/// Of the sum of absolute weights: a smaller sum is what rounding and cancellation leave.
+constexpr double LeastPartOfWeights = 1e-6;
+
+/// Throws where a component has no anchor: it could be anywhere.
+void RequireAnchors(const TriangleMesh& mesh, const std::vector<int>& anchors)
+{
+  std::vector<char> isAnchored(mesh.NumberOfComponents(), 0);
+  for (const int v : anchors)
+  {
+    if (mesh.IsUsed(v))
+    {
+      isAnchored[mesh.Component(v)] = 1;
+    }
+  }
+  IdSample floating;
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (mesh.IsUsed(v) && !isAnchored[mesh.Component(v)])
+    {
+      isAnchored[mesh.Component(v)] = 1;
+      floating.Add(v);
+    }
+  }
+  if (!floating.IsEmpty())
+  {
+    throw Error(ErrorCode::SingularSystem,
+      "Differential coordinates do not say where a surface is, and " +
+        std::to_string(floating.GetCount()) +
+        " of its components have no anchor: mark at least one point of each, such as " +
+        floating.Describe("point", "points") + " (Mark Handle).");
+  }
+}
+
+/// The masses in which the equations of a fit are weighted.
+Eigen::VectorXd MassesOfFit(const TriangleMesh& mesh, const Points& points,
+  const DifferentialReconstruction::Settings& settings, const DifferentialOperator& row,
+  const ExecutionContext& context)
+{
+  if (settings.Normalization != DeltaNormalization::Row)
+  {
+    return LaplaceOperator(mesh, points, settings.Weights, context).GetMass();
+  }
+  // Mean value weights have a unit; their mean takes it away.
+  return row.GetDivisors() / row.GetDivisors().mean();
+}
+}
+
+DifferentialOperator::DifferentialOperator(const TriangleMesh& mesh, const Points& points,
+  LaplacianWeights weights, DeltaNormalization normalization, const ExecutionContext& context)
+  : Weights(EdgeWeights(mesh, points, weights, context))
+  , Divisors(Eigen::VectorXd::Ones(mesh.NumberOfVertices()))
+{
+  if (normalization == DeltaNormalization::Integrated)
+  {
+    return;
+  }
+  const bool isByArea = normalization == DeltaNormalization::Area;
+  const Eigen::VectorXd areas =
+    isByArea ? MixedVoronoiAreas(mesh, points, context) : Eigen::VectorXd();
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (!mesh.IsUsed(v))
+    {
+      continue;
+    }
+    const auto ring = this->Weights.segment(mesh.RingBegin(v), mesh.RingEnd(v) - mesh.RingBegin(v));
+    const double size = ring.cwiseAbs().sum();
+    const double divisor = isByArea ? areas[v] : ring.sum();
+    const bool isDefined = isByArea ? divisor > 0.0 : divisor > LeastPartOfWeights * size;
+    this->Divisors[v] = isDefined ? divisor : (isByArea ? areas.mean() : size);
+    if (!isDefined)
+    {
+      this->Replaced.Add(v);
+    }
+  }
+}
+
+Points DifferentialOperator::Apply(
+  const TriangleMesh& mesh, const Points& values, const ExecutionContext& context) const
+{
+  Points deltas(values.rows(), 3);
+  context.For(mesh.NumberOfVertices(),
+    [&](int begin, int end)
+    {
+      for (int v = begin; v < end; ++v)
+      {
+        Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+        for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+        {
+          sum += this->Weights[d] * (values.row(v) - values.row(mesh.Neighbor(d)));
+        }
+        deltas.row(v) = sum / this->Divisors[v];
+      }
+    });
+  return deltas;
+}
+
+DifferentialReconstruction::DifferentialReconstruction(std::shared_ptr<const TriangleMesh> mesh,
+  std::shared_ptr<const Points> points, std::vector<int> anchors,
+  const Eigen::VectorXd& anchorWeights, const Settings& settings, const ExecutionContext& context)
+  : Mesh(std::move(mesh))
+  , Rest(std::move(points))
+  , AnchorVertices(std::move(anchors))
+  , Operator(
+      *this->Mesh, *this->Rest, settings.Weights, settings.Normalization, context.Part(0.0, 0.1))
+  , System(settings.Backend)
+{
+  RequireAnchors(*this->Mesh, this->AnchorVertices);
+  this->Masses =
+    MassesOfFit(*this->Mesh, *this->Rest, settings, this->Operator, context.Part(0.1, 0.2));
+  const bool isSoft = settings.Mode == AnchorMode::Soft;
+  Anchors held = Anchors::After(this->Mesh->NumberOfVertices(), this->Mesh->NumberOfVertices());
+  held.Stiffness = Eigen::VectorXd::Zero(this->Mesh->NumberOfVertices());
+  for (int v = 0; v < this->Mesh->NumberOfVertices(); ++v)
+  {
+    held.IsHard[v] = this->Mesh->IsUsed(v) ? 0 : 1;
+  }
+  for (std::size_t i = 0; i < this->AnchorVertices.size(); ++i)
+  {
+    const int v = this->AnchorVertices[i];
+    const double omega = anchorWeights[static_cast<Eigen::Index>(i)];
+    held.IsHard[v] = isSoft && this->Mesh->IsUsed(v) ? 0 : 1;
+    held.Stiffness[v] = held.IsHard[v] ? 0.0 : omega * omega;
+  }
+  this->System.FactorizeFit(Laplacian(*this->Mesh, this->Operator.GetWeights()),
+    this->Masses.cwiseInverse(), held, settings.Mode, context.Part(0.2, 1.0));
+}
+
+Points DifferentialReconstruction::Residual(const Points& deltas, const Points& positions) const
+{
+  const Points residual = deltas - this->Operator.Apply(*this->Mesh, positions);
+  // The equations are M^-1 L x = d, the deltas N^-1 L x.
+  return this->Operator.GetDivisors().cwiseQuotient(this->Masses).asDiagonal() * residual;
+}
+
+Points DifferentialReconstruction::Reconstruct(
+  const Points& deltas, const Points& anchorPositions, const ExecutionContext& context) const
+{
+  // Steps of refinement gain as many digits as the factors have; a step that does
+  // not halve the one before is rounding.
+  constexpr int MostSteps = 10;
+  Points positions = *this->Rest;
+  double before = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < MostSteps; ++step)
+  {
+    Points change = Points::Zero(positions.rows(), 3);
+    for (std::size_t i = 0; i < this->AnchorVertices.size(); ++i)
+    {
+      const int v = this->AnchorVertices[i];
+      change.row(v) = anchorPositions.row(static_cast<Eigen::Index>(i)) - positions.row(v);
+    }
+    this->System.Solve(this->Residual(deltas, positions), change);
+    const double size = change.norm();
+    if (step > 0 && !(size < 0.5 * before))
+    {
+      break;
+    }
+    positions += change;
+    before = size;
+    context.Report((step + 1.0) / MostSteps);
+  }
+  return positions;
+}
+
+std::size_t DifferentialReconstruction::GetBytes() const
+{
+  return this->System.GetBytes() +
+    TotalBytes(this->Masses, this->Operator.GetWeights(), this->Operator.GetDivisors(),
+      this->AnchorVertices);
+}
+}
