@@ -10,6 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkTable.h"
 
 #include <algorithm>
 
@@ -132,6 +133,11 @@ double AddFieldValue(vtkDataObject* output, const std::string& name, double valu
   array->InsertNextValue(value);
   output->GetFieldData()->AddArray(array);
   return value;
+}
+
+void AddColumn(vtkTable* table, const std::string& name, const Eigen::VectorXd& values)
+{
+  AddValues(table->GetRowData(), name, values.data(), values.size(), 1);
 }
 
 void AddFrameArrays(vtkPolyData* output, const Matrices& frames)

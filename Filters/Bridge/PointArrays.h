@@ -37,6 +37,9 @@ void AddPointArray(vtkPolyData* output, const std::string& name, const Points& v
 /// Adds one number as field data, and returns it.
 double AddFieldValue(vtkDataObject* output, const std::string& name, double value);
 
+/// Adds a column of doubles.
+void AddColumn(vtkTable* table, const std::string& name, const Eigen::VectorXd& values);
+
 /// Frames as the point arrays FrameTangent1, FrameTangent2 and FrameNormal of
 /// three doubles each.
 void AddFrameArrays(vtkPolyData* output, const Matrices& frames);

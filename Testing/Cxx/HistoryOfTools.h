@@ -4,9 +4,14 @@
 #include "History.h"
 
 #include "vtkCurvatureError.h"
+#include "vtkDifferentialCoordinates.h"
+#include "vtkDifferentialReconstruction.h"
 #include "vtkDiscreteForms.h"
 #include "vtkFrameReconstruction.h"
 #include "vtkHandleMotion.h"
+#include "vtkHighPassQuantization.h"
+#include "vtkLaplacianSpectrum.h"
+#include "vtkLeastSquaresMesh.h"
 #include "vtkMarkHandle.h"
 #include "vtkPrepareSurface.h"
 #include "vtkRestoreSurface.h"
@@ -217,6 +222,73 @@ inline Subject Restore()
       InputChoice(1) });
 }
 
+inline Subject Coordinates()
+{
+  using Filter = vtkDifferentialCoordinates;
+  return Make<Filter>("DifferentialCoordinates",
+    { InputChoice(), Enumeration<Filter>(3, &Filter::SetLaplacianWeights),
+      Enumeration<Filter>(3, &Filter::SetNormalization),
+      Name<Filter>(
+        &Filter::SetDifferentialCoordinatesArrayName, { "DifferentialCoordinates", "Delta" }) });
+}
+
+/// Coordinates of a few surfaces and kinds, with handles; some do not fit the settings.
+inline Subject ReconstructionFromCoordinates()
+{
+  using Filter = vtkDifferentialReconstruction;
+  const Choice input{ 2 * NumberOfSurfaces,
+    [](vtkAlgorithm* filter, int value, Surfaces& surfaces)
+    {
+      const auto coordinates = Upstream<vtkDifferentialCoordinates>();
+      coordinates->SetInputData(surfaces[value % NumberOfSurfaces]);
+      coordinates->SetLaplacianWeights(value < NumberOfSurfaces ? 1 : 0);
+      filter->SetInputConnection(0, coordinates->GetOutputPort());
+    } };
+  return Make<Filter>("DifferentialReconstruction",
+    { input, Enumeration<Filter>(3, &Filter::SetLaplacianWeights),
+      Enumeration<Filter>(3, &Filter::SetNormalization),
+      Enumeration<Filter>(3, &Filter::SetAnchorMode),
+      Number<Filter>(&Filter::SetConstraintWeight, { 1.0, 0.1, 10.0 }),
+      Name<Filter>(&Filter::SetConstraintWeightArrayName, { "", "Weight" }),
+      Name<Filter>(&Filter::SetAnchorPositionArrayName, { "", "Target" }),
+      Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "Other" }) });
+}
+
+inline Subject Spectrum()
+{
+  using Filter = vtkLaplacianSpectrum;
+  return Make<Filter>("LaplacianSpectrum",
+    { InputChoice(), Enumeration<Filter>(2, &Filter::SetOperator),
+      Of<Filter>(3, [](Filter* f, int value) { f->SetNumberOfModes(5 + 300 * (value / 2)); }),
+      Enumeration<Filter>(4, &Filter::SetApproximation),
+      Of<Filter>(3, [](Filter* f, int value) { f->SetApproximationModes(2 * value); }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetFirstMode(value); }),
+      Switch<Filter>(&Filter::SetPlayModes), Switch<Filter>(&Filter::SetGenerateModes),
+      Name<Filter>(&Filter::SetCoefficientArrayName, { "", "Target" }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetModeMemoryLimit(value ? 1 : 4000); }) });
+}
+
+inline Subject Approximation()
+{
+  using Filter = vtkLeastSquaresMesh;
+  return Make<Filter>("LeastSquaresMesh",
+    { InputChoice(), Enumeration<Filter>(3, &Filter::SetAnchorSelection),
+      Of<Filter>(3, [](Filter* f, int value) { f->SetNumberOfAnchors(1 + 20 * value); }),
+      Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "Other" }),
+      Switch<Filter>(&Filter::SetPlayAnchors), Switch<Filter>(&Filter::SetGenerateBasisFunctions),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetBasisMemoryLimit(value ? 1 : 4000); }) });
+}
+
+inline Subject Quantization()
+{
+  using Filter = vtkHighPassQuantization;
+  return Make<Filter>("HighPassQuantization",
+    { InputChoice(), Of<Filter>(3, [](Filter* f, int value) { f->SetBits(3 + 3 * value); }),
+      Of<Filter>(3, [](Filter* f, int value) { f->SetNumberOfAnchors(1 + 9 * value); }),
+      Number<Filter>(&Filter::SetMaximumError, { 0.0, 1e-3, 1e-9 }),
+      Number<Filter>(&Filter::SetVisualErrorAlpha, { 0.15, 1.0 }) });
+}
+
 inline std::vector<Subject> ToolSubjects()
 {
   return { Comparison<vtkCurvatureError>(
@@ -224,6 +296,7 @@ inline std::vector<Subject> ToolSubjects()
     Comparison<vtkVolumeChange>(
       "VolumeChange", Switch<vtkVolumeChange>(&vtkVolumeChange::SetComputeLocalVolume)),
     Make<vtkDiscreteForms>("DiscreteForms", { InputChoice() }), Reconstruction(), Mark(), Morph(),
-    Prepare(), Restore() };
+    Prepare(), Restore(), Coordinates(), ReconstructionFromCoordinates(), Spectrum(),
+    Approximation(), Quantization() };
 }
 }

@@ -10,6 +10,8 @@ FILTERS = {
     "ShapePreservingDeformation", "SimilarityDeformation", "AsRigidAsPossibleDeformation",
     "LaplacianDeformation", "PoissonDeformation", "MultiresolutionDeformation",
     "CurvatureError", "VolumeChange", "SurfaceMorph", "PrepareSurface", "RestoreSurface",
+    "DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",
+    "LeastSquaresMesh", "HighPassQuantization",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 

@@ -5,15 +5,13 @@
 #include "Differential/LaplaceOperator.h"
 #include "Mesh/Geometry.h"
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
 
 namespace cartan
 {
 namespace
 {
-/// Of the sum of absolute weights: a smaller sum is what rounding and cancellation leave.
-constexpr double LeastPartOfWeights = 1e-6;
-
 /// Throws where a component has no anchor: it could be anywhere.
 void RequireAnchors(const TriangleMesh& mesh, const std::vector<int>& anchors)
 {
@@ -76,15 +74,15 @@ DifferentialOperator::DifferentialOperator(const TriangleMesh& mesh, const Point
     {
       continue;
     }
-    const auto ring = this->Weights.segment(mesh.RingBegin(v), mesh.RingEnd(v) - mesh.RingBegin(v));
-    const double size = ring.cwiseAbs().sum();
-    const double divisor = isByArea ? areas[v] : ring.sum();
-    const bool isDefined = isByArea ? divisor > 0.0 : divisor > LeastPartOfWeights * size;
-    this->Divisors[v] = isDefined ? divisor : (isByArea ? areas.mean() : size);
-    if (!isDefined)
+    if (isByArea)
     {
-      this->Replaced.Add(v);
+      this->Divisors[v] = areas[v] > 0.0 ? areas[v] : areas.mean();
+      continue;
     }
+    // Also cotangents sum to more than zero, as in a triangle cot b + cot c =
+    // sin a / (sin b sin c), but for the rounding of slivers.
+    const auto ring = this->Weights.segment(mesh.RingBegin(v), mesh.RingEnd(v) - mesh.RingBegin(v));
+    this->Divisors[v] = std::max(ring.sum(), 1e-12 * ring.cwiseAbs().sum());
   }
 }
 

@@ -21,10 +21,8 @@ enum class DeltaNormalization
 ///   delta_i = 1 / n_i sum_j w_ij (v_i - v_j).
 ///
 /// They point outwards where the surface is convex. Rows of boundary vertices see a
-/// half ring and mean nothing by themselves, though a reconstruction uses them.
-/// Cotangent weights whose sum at a vertex is no more than 1e-6 of the sum of their
-/// absolute values leave no mean; n_i is the latter sum then. A vertex without area
-/// around it has the mean area of all.
+/// half ring and mean nothing by themselves, though a reconstruction uses them. A
+/// vertex without area around it has the mean area of all.
 class DifferentialOperator
 {
 public:
@@ -40,13 +38,9 @@ public:
   const Eigen::VectorXd& GetWeights() const { return this->Weights; }
   const Eigen::VectorXd& GetDivisors() const { return this->Divisors; }
 
-  /// Vertices whose n_i is not what the normalization says, see above.
-  const IdSample& GetReplaced() const { return this->Replaced; }
-
 private:
   Eigen::VectorXd Weights;
   Eigen::VectorXd Divisors;
-  IdSample Replaced;
 };
 
 /// Positions from differential coordinates and anchors (section 2.2): a least-squares
