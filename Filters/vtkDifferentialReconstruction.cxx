@@ -6,6 +6,7 @@
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Differential/DifferentialCoordinates.h"
+#include "Kernel/Mesh/UsedVertices.h"
 
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -134,14 +135,7 @@ cartan::Points ReadCoordinates(vtkPolyData* input, const cartan::TriangleMesh& m
       "Blending needs two names: set OtherDifferentialCoordinatesArrayName and "
       "BlendWeightArrayName, or neither.");
   }
-  std::vector<int> used;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    if (mesh.IsUsed(v))
-    {
-      used.push_back(v);
-    }
-  }
+  const std::vector<int> used = cartan::UsedVertices(mesh);
   const auto read = [&](const std::string& name)
   {
     RequireSameOperator(input, name, settings);

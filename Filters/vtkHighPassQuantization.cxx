@@ -5,6 +5,7 @@
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Compression/HighPassQuantization.h"
+#include "Kernel/Mesh/UsedVertices.h"
 
 #include "vtkIntArray.h"
 #include "vtkNew.h"
@@ -29,12 +30,8 @@ struct Decoded
     , Errors(
         cartan::VisualError(*surface.Mesh, *surface.Positions, this->Positions, alpha, context))
   {
-    int numberOfUsed = 0;
-    for (int v = 0; v < surface.Mesh->NumberOfVertices(); ++v)
-    {
-      numberOfUsed += surface.Mesh->IsUsed(v) ? 1 : 0;
-    }
-    this->RootMeanSquare = this->Errors.norm() / std::sqrt(numberOfUsed);
+    const auto count = static_cast<double>(cartan::UsedVertices(*surface.Mesh).size());
+    this->RootMeanSquare = this->Errors.norm() / std::sqrt(count);
   }
 
   cartan::HighPassCode Code;

@@ -5,6 +5,7 @@
 #include "Differential/DifferentialCoordinates.h"
 #include "Mesh/FarthestPoints.h"
 #include "Mesh/Geometry.h"
+#include "Mesh/UsedVertices.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,23 +61,19 @@ double Entropy(const std::vector<int>& counts)
 
 double HighPassCode::BitsPerVertex(const TriangleMesh& mesh) const
 {
+  const std::vector<int> used = UsedVertices(mesh);
   double bits = 0.0;
-  int numberOfUsed = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     std::vector<int> counts(std::size_t{ 1 } << this->Bits, 0);
-    numberOfUsed = 0;
-    for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+    for (const int v : used)
     {
-      if (mesh.IsUsed(v))
-      {
-        ++counts[static_cast<std::size_t>(this->Deltas(v, axis))];
-        ++numberOfUsed;
-      }
+      ++counts[static_cast<std::size_t>(this->Deltas(v, axis))];
     }
     bits += Entropy(counts);
   }
-  return bits + 3.0 * AnchorBits * static_cast<double>(this->Anchors.size()) / numberOfUsed;
+  return bits +
+    3.0 * AnchorBits * static_cast<double>(this->Anchors.size()) / static_cast<double>(used.size());
 }
 
 HighPassCoder::HighPassCoder(std::shared_ptr<const TriangleMesh> mesh, const Points& points,

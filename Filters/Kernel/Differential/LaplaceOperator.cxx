@@ -3,6 +3,7 @@
 
 #include "Algebra/SparseProduct.h"
 #include "Mesh/Geometry.h"
+#include "Mesh/UsedVertices.h"
 
 #include <algorithm>
 #include <cmath>
@@ -126,12 +127,7 @@ LaplaceOperator::LaplaceOperator(const TriangleMesh& mesh, const Points& points,
       LeftWeight(mesh, cornerWeights, d) + LeftWeight(mesh, cornerWeights, mesh.Twin(d));
   }
   Eigen::VectorXd areas = MixedVoronoiAreas(mesh, points, context);
-  int numberOfUsed = 0;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    numberOfUsed += mesh.IsUsed(v) ? 1 : 0;
-  }
-  const double mean = areas.sum() / numberOfUsed;
+  const double mean = areas.sum() / static_cast<double>(UsedVertices(mesh).size());
   BoundRatios(mesh, areas);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {

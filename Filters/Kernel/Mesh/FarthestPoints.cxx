@@ -2,6 +2,7 @@
 #include "Mesh/FarthestPoints.h"
 
 #include "Mesh/GeodesicDistance.h"
+#include "Mesh/UsedVertices.h"
 
 #include <algorithm>
 
@@ -13,11 +14,11 @@ std::vector<int> FarthestPoints(
   constexpr double Infinity = std::numeric_limits<double>::infinity();
   Eigen::VectorXd distances(mesh.NumberOfVertices());
   Eigen::RowVector3d center = Eigen::RowVector3d::Zero();
-  int numberOfUsed = 0;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  const std::vector<int> used = UsedVertices(mesh);
+  const auto numberOfUsed = static_cast<int>(used.size());
+  for (const int v : used)
   {
-    center += mesh.IsUsed(v) ? Eigen::RowVector3d(points.row(v)) : Eigen::RowVector3d::Zero();
-    numberOfUsed += mesh.IsUsed(v) ? 1 : 0;
+    center += points.row(v);
   }
   center /= std::max(1, numberOfUsed);
   const auto farthest = [&]

@@ -5,6 +5,7 @@
 #include "Base/Bytes.h"
 #include "Differential/Laplacian.h"
 #include "Mesh/Geometry.h"
+#include "Mesh/UsedVertices.h"
 
 #include <Eigen/Eigenvalues>
 #include <Spectra/SymEigsShiftSolver.h>
@@ -36,13 +37,7 @@ StandardProblem MakeProblem(const TriangleMesh& mesh, const Points& points, Spec
   const ExecutionContext& context)
 {
   StandardProblem problem;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    if (mesh.IsUsed(v))
-    {
-      problem.Vertices.push_back(v);
-    }
-  }
+  problem.Vertices = UsedVertices(mesh);
   const bool isGraph = kind == SpectrumOperator::Graph;
   const LaplacianWeights weights =
     isGraph ? LaplacianWeights::Uniform : LaplacianWeights::Cotangent;

@@ -6,6 +6,7 @@
 #include "Base/Bytes.h"
 #include "Differential/Laplacian.h"
 #include "Mesh/FarthestPoints.h"
+#include "Mesh/UsedVertices.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,19 +15,9 @@ namespace cartan
 {
 namespace
 {
-int NumberOfUsed(const TriangleMesh& mesh)
-{
-  int count = 0;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    count += mesh.IsUsed(v) ? 1 : 0;
-  }
-  return count;
-}
-
 void RequireCount(const TriangleMesh& mesh, int count)
 {
-  const int most = NumberOfUsed(mesh);
+  const auto most = static_cast<int>(UsedVertices(mesh).size());
   if (count < mesh.NumberOfComponents() || count > most)
   {
     throw Error(ErrorCode::BadInput,
