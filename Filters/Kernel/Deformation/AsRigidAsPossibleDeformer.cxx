@@ -86,7 +86,8 @@ std::size_t AsRigidAsPossibleDeformer::GetBytes() const
 {
   return this->GetBaseBytes() + this->Guess->GetBytes() + this->Cells.GetBytes() +
     TotalBytes(this->Rims, this->HoldsRotation, this->MovingHandles, this->Rest, this->Current,
-      this->Rotations, this->Before, this->CellEnergies, this->Residual, this->Energies);
+      this->Rotations, this->Before, this->Covariances, this->CellEnergies, this->Residual,
+      this->Energies);
 }
 
 Eigen::VectorXd AsRigidAsPossibleDeformer::GetVertexEnergies() const
@@ -99,18 +100,10 @@ Eigen::VectorXd AsRigidAsPossibleDeformer::GetVertexEnergies() const
   return energies;
 }
 
-void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
+/// S_i = sum_j w_ij (x_i - x_j) (p_i - p_j)^T, with rims over their edges too: the
+/// spokes' and rims' energy is least for the rotation closest to it.
+Eigen::Matrix3d AsRigidAsPossibleDeformer::Covariance(int cell) const
 {
-  if (this->HoldsRotation[cell])
-  {
-    return;
-  }
-  // Spokes: E_i is least for the rotation closest to
-  //   sum_j w_ij (x_i - x_j) (p_i - p_j)^T.
-  // Coupled rotations minimize - tr R^T S - alpha A tr R^T (W + D) R, concave in R, as
-  // W + D with the row sums D of W is not negative; D adds a constant. So the
-  // rotations closest to its negative gradient do not raise it, all at once: to
-  // S_i + 2 alpha A sum_j w_ij (R_j + R_i), whatever the order of the cells.
   const Row rest = this->Rest.row(cell);
   const Row current = this->Current.row(cell);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -120,11 +113,6 @@ void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
     const Row edge = current - this->Current.row(spoke.Neighbor);
     const Row restEdge = spoke.Weight * (rest - this->Rest.row(spoke.Neighbor));
     covariance += edge.transpose() * restEdge;
-    if (bending > 0.0)
-    {
-      covariance += 2.0 * bending * spoke.Weight *
-        (MatrixAt(this->Before, spoke.Neighbor) + MatrixAt(this->Before, cell));
-    }
   }
   if (!this->Rims.empty())
   {
@@ -140,27 +128,64 @@ void AsRigidAsPossibleDeformer::FitCell(int cell, double bending)
       }
     }
   }
-  auto rotation = MatrixAt(this->Rotations, cell);
-  rotation = ProjectOnRotations(covariance, rotation);
+  return covariance;
+}
+
+/// sum_j w_ij (R_j + R_i) of the rotations before the sweep.
+Eigen::Matrix3d AsRigidAsPossibleDeformer::CoupledRotations(int cell) const
+{
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  double weights = 0.0;
+  for (int s = this->Cells.SpokeOffsets[cell]; s < this->Cells.SpokeOffsets[cell + 1]; ++s)
+  {
+    const RigidCells::Spoke& spoke = this->Cells.Spokes[s];
+    sum += spoke.Weight * MatrixAt(this->Before, spoke.Neighbor);
+    weights += spoke.Weight;
+  }
+  return sum + weights * MatrixAt(this->Before, cell);
 }
 
 void AsRigidAsPossibleDeformer::FitRotations(const ExecutionContext& context)
 {
-  const double bending = this->BendingFactor();
-  const int sweeps = this->AreCoupled ? CoupledSweeps : 1;
-  for (int sweep = 0; sweep < sweeps; ++sweep)
+  // Of all active cells that do not keep theirs, in blocks on all threads.
+  const auto fitCells = [&](const Matrices& before, const auto& covariance)
   {
-    if (this->AreCoupled)
-    {
-      this->Before = this->Rotations;
-    }
     context.For(this->Cells.ActiveCount,
       [&](int begin, int end)
       {
         for (int cell = begin; cell < end; ++cell)
         {
-          this->FitCell(cell, bending);
+          const auto rotation = MatrixAt(before, cell);
+          MatrixAt(this->Rotations, cell) = this->HoldsRotation[cell]
+            ? Eigen::Matrix3d(rotation)
+            : ProjectOnRotations(covariance(cell), rotation);
         }
+      });
+  };
+  const double bending = this->BendingFactor();
+  if (bending == 0.0)
+  {
+    fitCells(this->Rotations, [&](int cell) { return this->Covariance(cell); });
+    return;
+  }
+  // Coupled rotations minimize - tr R^T S - alpha A tr R^T (W + D) R, concave in R, as
+  // W + D with the row sums D of W is not negative; D adds a constant. So the
+  // rotations closest to its negative gradient do not raise it, all at once: to
+  // S_i + 2 alpha A sum_j w_ij (R_j + R_i), whatever the order of the cells.
+  this->Covariances.resize(this->Cells.ActiveCount, 9);
+  for (int sweep = 0; sweep < CoupledSweeps; ++sweep)
+  {
+    // The other cells' are the same in both.
+    this->Before.swap(this->Rotations);
+    fitCells(this->Before,
+      [&](int cell) -> Eigen::Matrix3d
+      {
+        auto covariance = MatrixAt(this->Covariances, cell);
+        if (sweep == 0)
+        {
+          covariance = this->Covariance(cell);
+        }
+        return covariance + 2.0 * bending * this->CoupledRotations(cell);
       });
   }
 }
@@ -324,12 +349,16 @@ void AsRigidAsPossibleDeformer::Start(
         {
           rotation.setIdentity();
         }
-        if (cell >= this->Cells.ActiveCount)
+        if (cell >= this->Cells.ActiveCount && !this->HoldsRotation[cell])
         {
-          this->FitCell(cell, 0.0);
+          rotation = ProjectOnRotations(this->Covariance(cell), rotation);
         }
       }
     });
+  if (this->AreCoupled)
+  {
+    this->Before = this->Rotations;
+  }
   for (int cell = this->Cells.ActiveCount; cell < this->Cells.Count; ++cell)
   {
     this->EvaluateCell(cell, bending, targets);

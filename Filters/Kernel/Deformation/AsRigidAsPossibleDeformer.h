@@ -117,7 +117,8 @@ protected:
     const ExecutionContext& context) override;
 
 private:
-  void FitCell(int cell, double bending);
+  Eigen::Matrix3d Covariance(int cell) const;
+  Eigen::Matrix3d CoupledRotations(int cell) const;
   void FitRotations(const ExecutionContext& context);
   double Evaluate(const HandleTargets& targets, const ExecutionContext& context);
   void EvaluateCell(int cell, double bending, const HandleTargets& targets);
@@ -151,6 +152,7 @@ private:
   Points Current;               // #sites x 3
   Matrices Rotations;           // #sites x 9
   Matrices Before;              // the same before the last fit, where coupled
+  Matrices Covariances;         // #active cells x 9, where coupled
   Eigen::VectorXd CellEnergies; // #cells
   Points Residual;              // #unknowns x 3: b - L x
   bool HasPrevious = false;
