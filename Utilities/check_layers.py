@@ -24,7 +24,7 @@ LAYERS = {
     "Morph": ("Measure", "Differential", "Algebra", "Mesh"),
     "Spectral": ("Differential", "Algebra", "Mesh"),
     "Compression": ("Spectral", "Differential", "Algebra", "Mesh"),
-    "Merging": ("Differential", "Algebra", "Mesh"),
+    "Merging": ("Deformation", "Measure", "Differential", "Algebra", "Mesh"),
     "Distributed": ("Algebra", "Mesh"),
 }
 
