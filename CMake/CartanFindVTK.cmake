@@ -6,7 +6,7 @@ set(paraview_components RemotingCore pqApplicationComponents)
 set(vtk_components
   CommonCore CommonDataModel CommonExecutionModel CommonMath CommonSystem
   FiltersCore FiltersExtraction ParallelCore
-  CommonComputationalGeometry CommonTransforms FiltersGeometry FiltersSources IOXML # the tests
+  CommonComputationalGeometry CommonTransforms FiltersGeometry FiltersModeling FiltersSources IOXML # the tests
   TestingCore
   WrappingPythonCore)
 

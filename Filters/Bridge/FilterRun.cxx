@@ -200,8 +200,8 @@ vtkTable* FilterRun::OutputTable(int port) const
 
 std::shared_ptr<const Surface> FilterRun::ReadSurface(int port, const std::string& role)
 {
-  const auto surface =
-    cartan::ReadSurface(this->Input(port), role, this->TheContext.Part(0.0, 0.1));
+  const ExecutionContext context = this->TheContext.Part(0.1 * port, 0.1 * (port + 1));
+  const auto surface = cartan::ReadSurface(this->Input(port), role, context);
   this->KeepSurface(surface);
   this->Warn(surface->Describe(role, this->Input(port)));
   return surface;

@@ -3,6 +3,7 @@
 
 #include "History.h"
 
+#include "vtkBoundaryLoops.h"
 #include "vtkCurvatureError.h"
 #include "vtkDifferentialCoordinates.h"
 #include "vtkDifferentialReconstruction.h"
@@ -13,6 +14,7 @@
 #include "vtkLaplacianSpectrum.h"
 #include "vtkLeastSquaresMesh.h"
 #include "vtkMarkHandle.h"
+#include "vtkMeshMerge.h"
 #include "vtkPrepareSurface.h"
 #include "vtkRestoreSurface.h"
 #include "vtkRotationInvariantDeformation.h"
@@ -289,6 +291,33 @@ inline Subject Quantization()
       Number<Filter>(&Filter::SetVisualErrorAlpha, { 0.15, 1.0 }) });
 }
 
+/// The lower (port 0) or upper half of a surface, which is open where it is cut.
+inline Choice Half(int port)
+{
+  return { 2 * NumberOfSurfaces,
+    [port](vtkAlgorithm* filter, int value, Surfaces& surfaces)
+    {
+      vtkNew<vtkPlane> plane;
+      plane->SetNormal(0.0, 0.0, port ? 1.0 : -1.0);
+      plane->SetOrigin(0.0, 0.0, value < NumberOfSurfaces ? 1.7 : 2.1);
+      const auto clip = Upstream<vtkClipPolyData>();
+      clip->SetClipFunction(plane);
+      clip->SetInputData(surfaces[value % NumberOfSurfaces]);
+      filter->SetInputConnection(port, clip->GetOutputPort());
+    } };
+}
+
+inline Subject Merge()
+{
+  using Filter = vtkMeshMerge;
+  return Make<Filter>("MeshMerge",
+    { Half(0), Half(1), Enumeration<Filter>(2, &Filter::SetConfiguration),
+      Number<Filter>(&Filter::SetBendWidth, { 0.0, 0.5 }),
+      Of<Filter>(3, [](Filter* f, int value) { f->SetSeamFairing(value); }),
+      Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "None" }),
+      Name<Filter>(&Filter::SetBoundaryKeyArrayName, { "BoundaryKey", "Handle" }) });
+}
+
 inline std::vector<Subject> ToolSubjects()
 {
   return { Comparison<vtkCurvatureError>(
@@ -297,6 +326,7 @@ inline std::vector<Subject> ToolSubjects()
       "VolumeChange", Switch<vtkVolumeChange>(&vtkVolumeChange::SetComputeLocalVolume)),
     Make<vtkDiscreteForms>("DiscreteForms", { InputChoice() }), Reconstruction(), Mark(), Morph(),
     Prepare(), Restore(), Coordinates(), ReconstructionFromCoordinates(), Spectrum(),
-    Approximation(), Quantization() };
+    Approximation(), Quantization(), Make<vtkBoundaryLoops>("BoundaryLoops", { Half(0) }),
+    Merge() };
 }
 }

@@ -11,7 +11,7 @@ FILTERS = {
     "LaplacianDeformation", "PoissonDeformation", "MultiresolutionDeformation",
     "CurvatureError", "VolumeChange", "SurfaceMorph", "PrepareSurface", "RestoreSurface",
     "DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",
-    "LeastSquaresMesh", "HighPassQuantization",
+    "LeastSquaresMesh", "HighPassQuantization", "BoundaryLoops", "MeshMerge",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 
@@ -124,7 +124,7 @@ sphere = simple.Sphere()
 forms = simple.OutputPort(simple.DiscreteForms(Input=sphere), 1)
 for name in sorted(names):
     inputs = {"Forms": forms} if name == "FrameReconstruction" else {}
-    for second in ("Reference", "Original"):
+    for second in ("Reference", "Original", "Source"):
         if servermanager.ProxyManager().GetPrototypeProxy("filters", name).GetProperty(second):
             inputs[second] = sphere
     proxy = getattr(simple, name)(Input=sphere, **inputs)

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkMeshMerge
+ * @brief sews a part onto a surface at their open boundaries
+ *
+ * Input 0, the *target*, keeps its place. Input 1, the *source*, is deformed so that its
+ * boundary loops lie on the target's, with its details kept, turned and scaled; then both
+ * are sewn together without a gap.
+ *
+ * *Which loops*: points with equal numbers >= 1 in the array `BoundaryKey` of both inputs
+ * belong together; each on a boundary, once. Several per loop say how it is laid on the
+ * other, several loops may have some; loops without stay open. Without any key, one loop
+ * each needs nothing, and equal numbers of loops are paired by where they lie, with a
+ * warning that says which. Between keys equal parts of the lengths correspond.
+ *
+ * Output 0: one oriented manifold of triangles, in the target's precision, with the point
+ * and cell arrays that both inputs have with equal names, types and components (the
+ * target's where both have the point), and
+ * - `MergeOrigin` (int, points and cells): 0 target, 1 source, 2 a point on the seam,
+ * - `OriginalPointIds`, `OriginalCellIds` (vtkIdType): in the target, and where that has
+ *   none in the source,
+ * - `Normals`, anew, when an input has normals,
+ * - field data `SeamAngleMean`, `SeamAngleMaximum` (double, degrees): between the normals
+ *   of triangles on both sides of the seam.
+ * Points in no triangle, vertices and lines are left out.
+ *
+ * Output 1: what was matched, as lines with the cell arrays `Pair` (int, from 1) and
+ * `Kind` (int): 0 the target's loop, 1 the source's loop where it came from, 2 from a point of
+ * the source's loop to its place on the target's, 3 the same for a key.
+ *
+ * As long as the source, its loops and what is held stay the same, nothing is factorized
+ * again: a moved key costs two solves.
+ *
+ * Errors, each with empty outputs: an input without boundary; keys that are not on a
+ * boundary, on one input only, twice on one, join a loop to several or cross; different numbers
+ * of loops without keys; a part of the source that is neither sewn on nor held; boundaries
+ * without a direction; a seam that would be no manifold; DEPENDENT with nothing held; see
+ * vtkSurfaceFilter.
+ *
+ * Reference: Fu, Au, Tai, Effective Derivation of Similarity Transformations for Implicit
+ * Laplacian Mesh Editing, Computer Graphics Forum 26(1), 2007, section 5.
+ *
+ * @sa vtkBoundaryLoops vtkMarkHandle vtkSimilarityDeformation
+ */
+#ifndef vtkMeshMerge_h
+#define vtkMeshMerge_h
+
+#include "vtkSurfaceFilter.h"
+
+#include <string> // For array names
+
+class VTKCARTAN_EXPORT vtkMeshMerge : public vtkSurfaceFilter
+{
+public:
+  static vtkMeshMerge* New();
+  vtkTypeMacro(vtkMeshMerge, vtkSurfaceFilter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  vtkMeshMerge(const vtkMeshMerge&) = delete;
+  void operator=(const vtkMeshMerge&) = delete;
+
+  ///@{
+  /**
+   * The source, input 1.
+   */
+  void SetSourceConnection(vtkAlgorithmOutput* source) { this->SetInputConnection(1, source); }
+  void SetSourceData(vtkPolyData* source);
+  ///@}
+
+  enum ConfigurationType
+  {
+    INDEPENDENT = 0,
+    DEPENDENT = 1
+  };
+
+  ///@{
+  /**
+   * INDEPENDENT: the result is the same wherever the source is, however large and turned.
+   * DEPENDENT: the source's place counts. Its handles (HandleArrayName) keep theirs, and
+   * with BendWidth only what is near the seam moves. Default: INDEPENDENT.
+   */
+  vtkSetClampMacro(Configuration, int, INDEPENDENT, DEPENDENT);
+  vtkGetMacro(Configuration, int);
+  void SetConfigurationToIndependent() { this->SetConfiguration(INDEPENDENT); }
+  void SetConfigurationToDependent() { this->SetConfiguration(DEPENDENT); }
+  ///@}
+
+  ///@{
+  /**
+   * How far from its loops, over the surface, the source moves with DEPENDENT, in length
+   * units, >= 0. 0: everywhere but at handles. Default: 0.
+   */
+  vtkSetClampMacro(BendWidth, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(BendWidth, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the seam and so many rings of points around it, on both sides, are made as
+   * smooth as possible: their details are lost. 0: not, and the target keeps its place
+   * everywhere. Default: 0.
+   */
+  vtkSetClampMacro(SeamFairing, int, 0, 100);
+  vtkGetMacro(SeamFairing, int);
+  ///@}
+
+  ///@{
+  /**
+   * The point array of keys, on both inputs: whole numbers, 0 is no key. Default:
+   * "BoundaryKey".
+   */
+  void SetBoundaryKeyArrayName(const std::string& name)
+  {
+    this->SetMember(this->BoundaryKeyArrayName, name);
+  }
+  std::string GetBoundaryKeyArrayName() const { return this->BoundaryKeyArrayName; }
+  ///@}
+
+  ///@{
+  /**
+   * The source's point array whose points other than 0 are held with DEPENDENT. Default:
+   * "Handle".
+   */
+  void SetHandleArrayName(const std::string& name) { this->SetMember(this->HandleArrayName, name); }
+  std::string GetHandleArrayName() const { return this->HandleArrayName; }
+  ///@}
+
+  ///@{
+  /**
+   * Valid after Update(): the pairs of loops that were sewn together, and the angles between the
+   * normals on both sides of the seam, in degrees.
+   */
+  vtkGetMacro(NumberOfPairs, int);
+  vtkGetMacro(SeamAngleMean, double);
+  vtkGetMacro(SeamAngleMaximum, double);
+  ///@}
+
+  /**
+   * How many matrices the source's system, which is kept, has factorized.
+   */
+  vtkGetMacro(NumberOfFactorizations, int);
+
+  /**
+   * Output 1, valid after Update().
+   */
+  vtkPolyData* GetCorrespondences();
+
+protected:
+  vtkMeshMerge();
+  ~vtkMeshMerge() override = default;
+
+  void Execute(cartan::FilterRun& run) override;
+  void ForgetResults() override;
+  void UsePreparedInput(cartan::FilterRun&) const override { this->RefusePrepareInput(); }
+
+private:
+  struct Sides;
+  Sides ReadSides(cartan::FilterRun& run) const;
+  std::vector<char> HeldPoints(
+    const Sides& sides, const std::vector<std::vector<int>>& loops, cartan::FilterRun& run) const;
+
+  std::string BoundaryKeyArrayName = "BoundaryKey";
+  std::string HandleArrayName = "Handle";
+  int Configuration = INDEPENDENT;
+  double BendWidth = 0.0;
+  int SeamFairing = 0;
+  int NumberOfPairs = 0;
+  int NumberOfFactorizations = 0;
+  double SeamAngleMean = 0.0;
+  double SeamAngleMaximum = 0.0;
+};
+
+#endif
