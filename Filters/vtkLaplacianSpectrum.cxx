@@ -5,7 +5,7 @@
 #include "Bridge/FilterRun.h"
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfaceWriter.h"
-#include "Kernel/Spectral/LaplacianSpectrum.h"
+#include "Kernel/Spectral/SpectralField.h"
 
 #include "vtkDataArray.h"
 #include "vtkInformation.h"
@@ -18,7 +18,6 @@
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 vtkStandardNewMacro(vtkLaplacianSpectrum);
@@ -29,26 +28,6 @@ static_assert(static_cast<int>(cartan::SpectrumOperator::Graph) == vtkLaplacianS
 
 namespace
 {
-/// A field in the basis of the modes, as offsets from its mean.
-struct SpectralField
-{
-  SpectralField(const cartan::LaplacianSpectrum& spectrum, const cartan::Field& values)
-    : Mean(spectrum.Mass.transpose() * values / spectrum.Mass.sum())
-    , Offsets(values.rowwise() - this->Mean)
-    , Coefficients(spectrum.Coefficients(this->Offsets))
-    , OfMean(spectrum.Coefficients(cartan::Field(this->Mean.replicate(values.rows(), 1))))
-  {
-    // Points in no triangle have no part in it.
-    this->Offsets =
-      (spectrum.Mass.array() > 0.0).cast<double>().matrix().asDiagonal() * this->Offsets;
-  }
-
-  Eigen::RowVectorXd Mean;
-  cartan::Field Offsets;
-  Eigen::MatrixXd Coefficients;
-  Eigen::MatrixXd OfMean;
-};
-
 /// Modes [First, Last), or all others.
 struct Band
 {
@@ -56,26 +35,15 @@ struct Band
   int Last;
   bool IsComplement;
 
-  cartan::Field Of(const cartan::LaplacianSpectrum& spectrum, const SpectralField& field) const
+  cartan::Field Of(
+    const cartan::LaplacianSpectrum& spectrum, const cartan::SpectralField& field) const
   {
-    const cartan::Field sum = spectrum.Sum(field.Coefficients, this->First, this->Last);
-    const cartan::Field result = this->IsComplement ? cartan::Field(field.Offsets - sum) : sum;
-    return result.rowwise() + field.Mean;
+    return this->IsComplement ? field.ComplementOfBand(spectrum, this->First, this->Last)
+                              : field.Band(spectrum, this->First, this->Last);
   }
 };
 
-/// The part of |values|_M^2 that the modes up to each one carry.
-Eigen::VectorXd Energies(const cartan::LaplacianSpectrum& spectrum, const SpectralField& field)
-{
-  const double whole =
-    (spectrum.Mass.asDiagonal() * field.Offsets).cwiseProduct(field.Offsets).sum();
-  Eigen::VectorXd energies = field.Coefficients.rowwise().squaredNorm();
-  std::partial_sum(energies.data(), energies.data() + energies.size(), energies.data());
-  return whole > 0.0 ? Eigen::VectorXd(energies / whole)
-                     : Eigen::VectorXd(Eigen::VectorXd::Ones(energies.size()));
-}
-
-void FillTable(const cartan::LaplacianSpectrum& spectrum, const SpectralField& positions,
+void FillTable(const cartan::LaplacianSpectrum& spectrum, const cartan::SpectralField& positions,
   const Eigen::RowVector3d& origin, vtkTable* table)
 {
   vtkNew<vtkIntArray> modes;
@@ -86,13 +54,13 @@ void FillTable(const cartan::LaplacianSpectrum& spectrum, const SpectralField& p
   cartan::AddColumn(table, "Eigenvalue", spectrum.Eigenvalues);
   const Eigen::MatrixXd ofOrigin =
     spectrum.Coefficients(cartan::Field(origin.replicate(spectrum.Modes.rows(), 1)));
-  const Eigen::MatrixXd coefficients = positions.Coefficients + positions.OfMean + ofOrigin;
+  const Eigen::MatrixXd coefficients = positions.GetCoefficients() + ofOrigin;
   const char* const axes[] = { "X", "Y", "Z" };
   for (int axis = 0; axis < 3; ++axis)
   {
     cartan::AddColumn(table, axes[axis], coefficients.col(axis));
   }
-  cartan::AddColumn(table, "Energy", Energies(spectrum, positions));
+  cartan::AddColumn(table, "Energy", positions.Energies(spectrum));
 }
 
 /// Coefficients of a point array, and the array of the same approximation.
@@ -115,11 +83,11 @@ void AddApproximatedArray(vtkPolyData* input, const std::string& name,
   {
     values.row(used[i]) = read.row(static_cast<Eigen::Index>(i));
   }
-  const SpectralField field(spectrum, values);
+  const cartan::SpectralField field(spectrum, values);
   for (int c = 0; c < components; ++c)
   {
     cartan::AddColumn(table, components > 1 ? name + "_" + std::to_string(c) : name,
-      field.Coefficients.col(c) + field.OfMean.col(c));
+      field.GetCoefficients().col(c));
   }
   if (band)
   {
@@ -197,7 +165,7 @@ void vtkLaplacianSpectrum::Execute(cartan::FilterRun& run)
     band.First = std::min(this->FirstMode, last);
   }
   const bool isApproximated = this->Approximation != NONE;
-  const SpectralField positions(*spectrum, *surface->Positions);
+  const cartan::SpectralField positions(*spectrum, *surface->Positions);
   if (isApproximated)
   {
     const cartan::Points approximation = band.Of(*spectrum, positions);
