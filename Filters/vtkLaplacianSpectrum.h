@@ -35,7 +35,7 @@
  *
  * Reference: Sorkine, Differential Representations for Mesh Processing, Computer
  * Graphics Forum 25(4), 2006, sections 2.3 and 3.1; Karni and Gotsman, Spectral
- * Compression of Mesh Geometry, 2000. The eigenvalue solver is Spectra's.
+ * Compression of Mesh Geometry, 2000.
  */
 #ifndef vtkLaplacianSpectrum_h
 #define vtkLaplacianSpectrum_h

@@ -152,11 +152,11 @@ TEST_F(SpectrumFilter, RefusesMoreModesThanPointsOrMemory)
   this->Filter->SetModeMemoryLimit(1);
   this->Result();
   vtktest::ExpectMessage(this->Log->Errors,
-    { "100 modes", "at most 43", shapes::Advice(", or raise the memory limit.") });
+    { "100 modes", "at most 33", shapes::Advice(", or raise the memory limit.") });
   EXPECT_EQ(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
   EXPECT_EQ(this->Filter->GetSpectrumTable()->GetNumberOfRows(), 0);
   this->Log->Clear();
-  this->Filter->SetNumberOfModes(43);
+  this->Filter->SetNumberOfModes(33);
   EXPECT_EQ(this->Result().rows(), 642);
   this->Filter->SetNumberOfModes(100);
   this->Filter->SetModeMemoryLimit(10);

@@ -40,11 +40,9 @@ struct LaplacianSpectrum
   std::size_t GetBytes() const;
 };
 
-/// Computes `count` modes, 1 <= count <= the number of used vertices, by the shift-invert
-/// Lanczos method of Spectra on a factorization of L + shift M; all of them by a dense
-/// decomposition where these are few or `count` is most of them. Throws Error(BadInput)
-/// for another count, naming the largest, and Error(OutOfMemory) naming how many modes
-/// fit into `maximumBytes`; Error(NotConverged) when Lanczos' method stops short.
+/// Computes `count` modes, 1 <= count <= the number of used vertices. Throws Error(BadInput)
+/// for another count, naming the largest; Error(OutOfMemory) naming how many modes fit into
+/// `maximumBytes`, without the factorization; and what LowestEigenpairs throws.
 LaplacianSpectrum ComputeSpectrum(const TriangleMesh& mesh, const Points& points,
   SpectrumOperator kind, int count, std::uint64_t maximumBytes,
   SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
