@@ -18,6 +18,7 @@
 #include "vtkPrepareSurface.h"
 #include "vtkRestoreSurface.h"
 #include "vtkRotationInvariantDeformation.h"
+#include "vtkSpectralWatermark.h"
 #include "vtkSurfaceMorph.h"
 #include "vtkVolumeChange.h"
 
@@ -291,6 +292,20 @@ inline Subject Quantization()
       Number<Filter>(&Filter::SetVisualErrorAlpha, { 0.15, 1.0 }) });
 }
 
+inline Subject Watermark()
+{
+  using Filter = vtkSpectralWatermark;
+  return Make<Filter>("SpectralWatermark",
+    { InputChoice(0), InputChoice(1), Enumeration<Filter>(2, &Filter::SetMode),
+      Name<Filter>(&Filter::SetMessage, { "10", "", "0110" }),
+      Enumeration<Filter>(2, &Filter::SetMessageFormat),
+      Name<Filter>(&Filter::SetKey, { "", "key" }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetNumberOfBits(2 + 30 * value); }),
+      Number<Filter>(&Filter::SetStrength, { 0.001, 0.01 }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetPatchSize(20 * value); }),
+      Number<Filter>(&Filter::SetModeFraction, { 0.07, 0.3 }), Switch<Filter>(&Filter::SetAlign) });
+}
+
 /// The lower (port 0) or upper half of a surface, which is open where it is cut.
 inline Choice Half(int port)
 {
@@ -326,7 +341,7 @@ inline std::vector<Subject> ToolSubjects()
       "VolumeChange", Switch<vtkVolumeChange>(&vtkVolumeChange::SetComputeLocalVolume)),
     Make<vtkDiscreteForms>("DiscreteForms", { InputChoice() }), Reconstruction(), Mark(), Morph(),
     Prepare(), Restore(), Coordinates(), ReconstructionFromCoordinates(), Spectrum(),
-    Approximation(), Quantization(), Make<vtkBoundaryLoops>("BoundaryLoops", { Half(0) }),
-    Merge() };
+    Approximation(), Quantization(), Make<vtkBoundaryLoops>("BoundaryLoops", { Half(0) }), Merge(),
+    Watermark() };
 }
 }

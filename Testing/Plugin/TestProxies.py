@@ -11,7 +11,8 @@ FILTERS = {
     "LaplacianDeformation", "PoissonDeformation", "MultiresolutionDeformation",
     "CurvatureError", "VolumeChange", "SurfaceMorph", "PrepareSurface", "RestoreSurface",
     "DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",
-    "LeastSquaresMesh", "HighPassQuantization", "BoundaryLoops", "MeshMerge",
+    "LeastSquaresMesh", "HighPassQuantization", "SpectralWatermark",
+    "BoundaryLoops", "MeshMerge",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 

@@ -7,7 +7,8 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 # Outputs, texts of PrintSelf, and what VTK has of its own.
-NOT_RESULTS = {"GetFormsTable", "GetChangeTable", "GetSpectrumTable", "GetErrorTable", "GetCorrespondences",
+NOT_RESULTS = {"GetFormsTable", "GetChangeTable", "GetSpectrumTable", "GetErrorTable",
+               "GetBitTable", "GetCorrespondences",
                "GetModeAsString", "GetRegionSourceAsString",
                "GetOrientation", "GetProblem", "GetMTime", "GetErrorCode"}
 
