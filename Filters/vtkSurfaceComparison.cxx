@@ -25,7 +25,8 @@ void vtkSurfaceComparison::SetReferenceData(vtkPolyData* reference)
 
 int vtkSurfaceComparison::FillInputPortInformation(int port, vtkInformation* info)
 {
-  return port == 1 ? SetPortType(info, "vtkPolyData", !this->NeedsReference())
+  // Optional for the pipeline: a filter may be made first and get its reference then.
+  return port == 1 ? SetPortType(info, "vtkPolyData", true)
                    : this->Superclass::FillInputPortInformation(port, info);
 }
 
@@ -40,6 +41,11 @@ void vtkSurfaceComparison::Execute(cartan::FilterRun& run)
     run.Output()->ShallowCopy(input);
     this->Measure(run);
     return;
+  }
+  if (!reference)
+  {
+    throw cartan::Error(cartan::ErrorCode::BadInput,
+      "There is no reference to compare with, such as the surface before it was deformed.");
   }
   const cartan::MatchedSurfaces matched = cartan::ReadMatchedSurfaces({ input, reference },
     { "input", "reference" },

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqCartanBehavior.h"
 
+#include "pqColoring.h"
 #include "pqStartingValues.h"
 #ifdef CARTAN_HAVE_PYTHON
 #include "pqTraceFilter.h"
@@ -39,6 +40,7 @@ pqCartanBehavior::~pqCartanBehavior() = default;
 void pqCartanBehavior::startup()
 {
   this->TraceFilter = std::make_unique<pqTraceFilter>();
+  RegisterHandleColors();
   auto* core = pqApplicationCore::instance();
   auto* model = core->getServerManagerModel();
   QObject::connect(
@@ -76,7 +78,13 @@ void pqCartanBehavior::refresh()
     if (IsOurs(source) && source->modifiedState() != pqProxy::UNINITIALIZED)
     {
       source->getProxy()->UpdatePropertyInformation();
+      CenterColors(source);
     }
+  }
+  // A filter is colored once: other colors are the user's choice.
+  if (this->NewMarking && ColorByHandle(this->NewMarking))
+  {
+    this->NewMarking = nullptr;
   }
 }
 
@@ -85,5 +93,9 @@ void pqCartanBehavior::startFilter(pqPipelineSource* filter)
   if (IsOurs(filter))
   {
     SetStartingValues(filter);
+    if (filter->getProxy()->GetProperty("MarkedPointIds"))
+    {
+      this->NewMarking = filter;
+    }
   }
 }

@@ -9,19 +9,24 @@
  * - Filters that are made in the window start with values that can be used at once:
  *   Mark Handle with the next free id and a box around an end of the surface, or the
  *   points that are selected; deformations with the handle that was marked last, and
- *   the box that moves it. Scripts start with the defaults that XML declares.
+ *   the box that moves it; measures with the surface before it moved as Reference.
+ *   Scripts start with the defaults that XML declares.
+ * - A Mark Handle filter is applied when it is made, and its output colored by handles.
+ *   Ratios and errors are colored around their neutral value.
  *
  * ParaView starts it with the plugin.
  */
 #ifndef pqCartanBehavior_h
 #define pqCartanBehavior_h
 
+#include "pqPipelineSource.h"
+
 #include <QObject>
+#include <QPointer>
 #include <QTimer>
 
 #include <memory>
 
-class pqPipelineSource;
 class pqTraceFilter;
 class pqView;
 
@@ -48,6 +53,9 @@ private:
   void startFilter(pqPipelineSource* filter);
 
   QTimer Refresh;
+
+  /// The Mark Handle filter that was made last, until a view shows it.
+  QPointer<pqPipelineSource> NewMarking;
   std::unique_ptr<pqTraceFilter> TraceFilter;
 };
 

@@ -3,6 +3,7 @@
 
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
+#include "pqHandleMotions.h"
 #include "pqPipelineSource.h"
 #include "pqProxy.h"
 #include "pqServerManagerModel.h"
@@ -23,7 +24,6 @@
 #include <QPushButton>
 
 #include <utility>
-#include <vector>
 
 namespace
 {
@@ -101,20 +101,15 @@ pqProxy* pqHandleBoxWidget::appliedFilter() const
 void pqHandleBoxWidget::surroundHandle()
 {
   const int id = vtkSMUncheckedPropertyHelper(this->Filter, "ActiveHandle").GetAsInt();
-  const std::vector<double> rows =
-    vtkSMPropertyHelper(this->Filter, "HandleBounds").GetDoubleArray();
-  constexpr std::size_t width = 7; // id and bounds
-  std::size_t row = 0;
-  while (row + width <= rows.size() && rows[row] != id)
-  {
-    row += width;
-  }
+  const vtkBoundingBox box = HandleBox(this->Filter, id);
   const bool hadHandle = this->HasHandle;
-  this->HasHandle = row + width <= rows.size();
+  this->HasHandle = box.IsValid();
   if (this->HasHandle)
   {
     // The links of the property group take the bounds to the box.
-    vtkSMPropertyHelper(this->proxy(), "ReferenceBounds").Set(&rows[row + 1], 6);
+    double bounds[6];
+    box.GetBounds(bounds);
+    vtkSMPropertyHelper(this->proxy(), "ReferenceBounds").Set(bounds, 6);
     this->proxy()->UpdateVTKObjects();
   }
   if (this->HasHandle != hadHandle)

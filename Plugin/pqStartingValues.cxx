@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqStartingValues.h"
 
+#include "pqChangePipelineInputReaction.h"
+#include "pqHandleMotions.h"
 #include "pqOutputPort.h"
 #include "pqPVApplicationCore.h"
 #include "pqPipelineSource.h"
 #include "pqSelectionManager.h"
+#include "pqServerManagerModel.h"
 #include "vtkBoundingBox.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
-#include "vtkSMProxyListDomain.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 #include "vtkSmartPointer.h"
+
+#include <QTimer>
 
 #include <algorithm>
 #include <cstring>
@@ -69,20 +73,6 @@ int LastMarkedHandle(vtkSMProxy* filter)
   return 0;
 }
 
-/// One of the proxies that a property offers, by the name that it has in XML.
-vtkSMProxy* Offered(vtkSMProxy* filter, const char* property, const char* name)
-{
-  auto* offers = filter->GetProperty(property)->FindDomain<vtkSMProxyListDomain>();
-  for (unsigned int i = 0; offers && i < offers->GetNumberOfProxies(); ++i)
-  {
-    if (std::strcmp(offers->GetProxy(i)->GetXMLName(), name) == 0)
-    {
-      return offers->GetProxy(i);
-    }
-  }
-  return nullptr;
-}
-
 /// Handles with odd ids start at the lower end of the surface's longest side, those with
 /// even ids at the upper end: one to keep, one to move.
 void PlaceRegion(vtkSMProxy* box, const vtkBoundingBox& surface, int id)
@@ -133,7 +123,7 @@ void StartMarkHandle(vtkSMProxy* filter)
   const int id = LargestHandle(filter) + 1;
   vtkSMPropertyHelper(filter, "HandleId").Set(id);
   const std::vector<vtkIdType> selected = SelectedPointIds(filter);
-  vtkSMProxy* box = Offered(filter, "Region", "Box");
+  vtkSMProxy* box = OfferedProxy(filter, "Region", "Box");
   vtkPVDataInformation* data = InputData(filter);
   if (!selected.empty())
   {
@@ -163,7 +153,7 @@ void StartCenter(vtkSMProxy* filter)
 {
   const std::vector<double> bounds =
     vtkSMPropertyHelper(filter, "ActiveHandleBounds").GetDoubleArray();
-  vtkSMProxy* turn = Offered(filter, "Motion", "Axis and Angle");
+  vtkSMProxy* turn = OfferedProxy(filter, "Motion", "Axis and Angle");
   if (turn && bounds.size() == 6 && bounds[0] <= bounds[1])
   {
     const double center[3] = { 0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[2] + bounds[3]),
@@ -175,9 +165,36 @@ void StartCenter(vtkSMProxy* filter)
 
 void StartBox(vtkSMProxy* filter)
 {
-  if (vtkSMProxy* box = Offered(filter, "Motion", "Box"))
+  if (vtkSMProxy* box = OfferedProxy(filter, "Motion", "Box"))
   {
     vtkSMPropertyHelper(filter, "Motion").Set(box);
+  }
+}
+
+/// What a measure compares with at first: the nearest Mark Handle upstream, where the
+/// surface is before it moves, or else the input of the nearest deformation or morph.
+vtkSMSourceProxy* NearestRest(vtkSMProxy* measure)
+{
+  vtkSMSourceProxy* before = nullptr;
+  for (vtkSMSourceProxy* source = InputOf(measure); source && source->GetProperty("Input");
+       source = InputOf(source))
+  {
+    if (std::strcmp(source->GetXMLName(), "MarkHandle") == 0)
+    {
+      return source == InputOf(measure) ? nullptr : source;
+    }
+    const bool moves =
+      source->GetProperty("ActiveHandle") || std::strcmp(source->GetXMLName(), "SurfaceMorph") == 0;
+    before = moves && !before ? InputOf(source) : before;
+  }
+  return before;
+}
+
+void StartReference(vtkSMProxy* filter)
+{
+  if (vtkSMSourceProxy* rest = NearestRest(filter))
+  {
+    vtkSMPropertyHelper(filter, "Reference").Set(rest, 0);
   }
 }
 
@@ -188,6 +205,21 @@ void StartTraced(vtkSMProxy* filter, void (*start)(vtkSMProxy*))
   start(filter);
   filter->UpdateVTKObjects();
 }
+
+/// Applies what has just been made, unless other filters wait for Apply as well.
+void ApplyAlone()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  int waiting = 0;
+  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
+  {
+    waiting += source->modifiedState() != pqProxy::UNMODIFIED ? 1 : 0;
+  }
+  if (waiting == 1)
+  {
+    pqPVApplicationCore::instance()->applyPipeline();
+  }
+}
 }
 
 void SetStartingValues(pqPipelineSource* source)
@@ -196,6 +228,8 @@ void SetStartingValues(pqPipelineSource* source)
   if (filter->GetProperty("PointIds"))
   {
     StartTraced(filter, StartMarkHandle);
+    // The view shows at once what the region catches.
+    QTimer::singleShot(0, source, &ApplyAlone);
   }
   else if (filter->GetProperty("ActiveHandle"))
   {
@@ -206,6 +240,15 @@ void SetStartingValues(pqPipelineSource* source)
     // One by one: a trace records what changes in the motion that is chosen.
     StartTraced(filter, StartCenter);
     StartTraced(filter, StartBox);
+  }
+  else if (filter->GetProperty("Reference"))
+  {
+    StartTraced(filter, StartReference);
+    const bool needsReference = std::strcmp(filter->GetXMLName(), "VolumeChange") == 0;
+    if (needsReference && !vtkSMPropertyHelper(filter, "Reference").GetAsProxy())
+    {
+      QTimer::singleShot(0, source, &pqChangePipelineInputReaction::changeInput);
+    }
   }
 }
 

@@ -33,6 +33,7 @@ check_refused(deformation, "nothing")
 
 other = simple.Sphere()
 check_refused(simple.VolumeChange(Input=bar, Reference=other), "points")
+check_refused(simple.VolumeChange(Input=bar), "no reference")
 check_refused(simple.CurvatureError(Input=bar, Reference=other), "points")
 forms = simple.DiscreteForms(Input=other)
 check_refused(simple.FrameReconstruction(Input=bar, Forms=simple.OutputPort(forms, 1)), "")
