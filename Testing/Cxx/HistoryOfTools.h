@@ -4,6 +4,7 @@
 #include "History.h"
 
 #include "vtkBoundaryLoops.h"
+#include "vtkCoatingTransfer.h"
 #include "vtkCurvatureError.h"
 #include "vtkDifferentialCoordinates.h"
 #include "vtkDifferentialReconstruction.h"
@@ -333,6 +334,20 @@ inline Subject Merge()
       Name<Filter>(&Filter::SetBoundaryKeyArrayName, { "BoundaryKey", "Handle" }) });
 }
 
+inline Subject Coating()
+{
+  using Filter = vtkCoatingTransfer;
+  return Make<Filter>("CoatingTransfer",
+    { InputChoice(0), InputChoice(1),
+      Of<Filter>(3, [](Filter* f, int value) { f->SetCorrespondence(value == 1 ? 2 : value); }),
+      Enumeration<Filter>(3, &Filter::SetAlignment),
+      Number<Filter>(&Filter::SetSmoothing, { 5.0, 1.0 }),
+      Number<Filter>(&Filter::SetStrength, { 1.0, -0.5 }), Switch<Filter>(&Filter::SetScaleDetails),
+      Name<Filter>(&Filter::SetRegionArrayName, { "", "Handle" }),
+      Number<Filter>(&Filter::SetFadeWidth, { 0.0, 0.5 }),
+      Switch<Filter>(&Filter::SetTransferArrays) });
+}
+
 inline std::vector<Subject> ToolSubjects()
 {
   return { Comparison<vtkCurvatureError>(
@@ -342,6 +357,6 @@ inline std::vector<Subject> ToolSubjects()
     Make<vtkDiscreteForms>("DiscreteForms", { InputChoice() }), Reconstruction(), Mark(), Morph(),
     Prepare(), Restore(), Coordinates(), ReconstructionFromCoordinates(), Spectrum(),
     Approximation(), Quantization(), Make<vtkBoundaryLoops>("BoundaryLoops", { Half(0) }), Merge(),
-    Watermark() };
+    Watermark(), Coating() };
 }
 }

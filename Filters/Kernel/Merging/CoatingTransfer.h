@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Base/ExecutionContext.h"
+#include "Mesh/TriangleMesh.h"
+
+#include <array>
+#include <vector>
+
+namespace cartan
+{
+/// A place on a triangle surface.
+struct SurfacePlace
+{
+  std::array<int, 3> Corners = { 0, 0, 0 };           ///< vertices
+  Eigen::Vector3d Weights = Eigen::Vector3d::UnitX(); ///< barycentric coordinates
+};
+
+/// Values (a row per vertex) at places: #places x columns.
+Field AtPlaces(const Field& values, const std::vector<SurfacePlace>& places);
+
+/// The surface without its details, those whose wave length is below `width` mean edge
+/// lengths of their component: waves of this length keep three quarters of their height,
+/// half as long ones a tenth, and twice as long ones all but .4 % (of second
+/// order in time and space, after Desbrun et al., Implicit Fairing of Irregular Meshes
+/// using Diffusion and Curvature Flow, 1999; with S = (M + tau^2 L M^-1 L)^-1 M, tau the
+/// inverse of the squared wave number, the result is S (2 - S) p, so that large forms do
+/// not shrink). width >= 0; 0 returns the points.
+Points SmoothBase(const TriangleMesh& mesh, const Points& points, double width,
+  const ExecutionContext& context = {});
+
+/// How the neighborhood of each target vertex lies to that of its place on the source:
+/// the rotation that takes the places of its one-ring, with their normal, closest to the
+/// ring itself, and the ratio of their edges (1 where the places are all one).
+struct PlaceFrames
+{
+  Matrices Rotations;     ///< #V of the target x 9
+  Eigen::VectorXd Scales; ///< #V of the target
+};
+
+/// `places` are those of the target's vertices on the source's base; rows of unused
+/// vertices mean nothing.
+PlaceFrames FramesAtPlaces(const TriangleMesh& target, const Points& targetPoints,
+  const Points& basePoints, const std::vector<SurfacePlace>& places,
+  const ExecutionContext& context = {});
+
+/// The displacements that a coating, the difference between a detailed surface and its
+/// smooth base, makes of the target (Sorkine et al., Laplacian Surface Editing, 2004,
+/// section 4; Sorkine, Differential Representations for Mesh Processing, 2006, section
+/// 4.4). There Laplacian coordinates are carried over; between surfaces of different
+/// connectivity these hang on the triangles, so here displacements are, in the frames of
+/// the base: turned by the rotation of each place, and scaled by its scale on request.
+///
+///   u_i = strength_i s_i R_i (v - b)(place of i): #V of the target x 3.
+Points CoatingDisplacements(const Points& base, const Points& detailed,
+  const std::vector<SurfacePlace>& places, const PlaceFrames& frames, bool scales,
+  const Eigen::VectorXd& strengths);
+}
