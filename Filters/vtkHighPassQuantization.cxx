@@ -5,6 +5,7 @@
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Compression/HighPassQuantization.h"
+#include "Kernel/Compression/QualitySearch.h"
 #include "Kernel/Mesh/UsedVertices.h"
 
 #include "vtkIntArray.h"
@@ -14,7 +15,7 @@
 #include "vtkPolyData.h"
 
 #include <cmath>
-#include <sstream>
+#include <memory>
 
 vtkStandardNewMacro(vtkHighPassQuantization);
 
@@ -41,28 +42,22 @@ struct Decoded
 };
 
 /// The fewest bits that meet the bound.
-Decoded FewestBits(const cartan::Surface& surface, const cartan::HighPassCoder& coder,
-  double maximumError, double alpha, const cartan::ExecutionContext& context)
+std::unique_ptr<Decoded> DecodedWithFewestBits(const cartan::Surface& surface,
+  const cartan::HighPassCoder& coder, double maximumError, double alpha,
+  const cartan::ExecutionContext& context)
 {
-  constexpr int MostBits = 16;
   const double diagonal =
     (surface.Positions->colwise().maxCoeff() - surface.Positions->colwise().minCoeff()).norm();
-  double reached = 0.0;
-  for (int bits = 1; bits <= MostBits; ++bits)
-  {
-    Decoded decoded(surface, coder, bits, alpha,
-      context.Part((bits - 1.0) / MostBits, static_cast<double>(bits) / MostBits));
-    if (decoded.RootMeanSquare <= maximumError * diagonal)
+  std::unique_ptr<Decoded> decoded;
+  cartan::FewestBits(
+    [&](int bits)
     {
-      return decoded;
-    }
-    reached = decoded.RootMeanSquare / diagonal;
-  }
-  std::ostringstream text;
-  text << MostBits << " bits with " << coder.NumberOfAnchors()
-       << " anchors reach a visual error of " << reached << " of the diagonal, not " << maximumError
-       << "; allow a larger MaximumError.";
-  throw cartan::Error(cartan::ErrorCode::BadInput, text.str());
+      decoded = std::make_unique<Decoded>(
+        surface, coder, bits, alpha, context.Part((bits - 1.0) / 16.0, bits / 16.0));
+      return decoded->RootMeanSquare / diagonal;
+    },
+    maximumError, coder.NumberOfAnchors());
+  return decoded;
 }
 }
 
@@ -99,9 +94,10 @@ void vtkHighPassQuantization::Execute(cartan::FilterRun& run)
         this->NumberOfAnchors, cartan::SolverBackend::Automatic, context.Part(0.1, 0.6));
     });
   const cartan::ExecutionContext rest = context.Part(0.6, 0.95);
-  const Decoded decoded = this->MaximumError > 0.0
-    ? FewestBits(*surface, *coder, this->MaximumError, this->VisualErrorAlpha, rest)
-    : Decoded(*surface, *coder, this->Bits, this->VisualErrorAlpha, rest);
+  const std::unique_ptr<Decoded> found = this->MaximumError > 0.0
+    ? DecodedWithFewestBits(*surface, *coder, this->MaximumError, this->VisualErrorAlpha, rest)
+    : std::make_unique<Decoded>(*surface, *coder, this->Bits, this->VisualErrorAlpha, rest);
+  const Decoded& decoded = *found;
 
   vtkPolyData* output = run.Output();
   run.Warn(

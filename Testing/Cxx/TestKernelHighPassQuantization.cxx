@@ -2,6 +2,7 @@
 #include "Kernel/Compression/HighPassQuantization.h"
 
 #include "Kernel/Base/Error.h"
+#include "Kernel/Compression/QualitySearch.h"
 #include "RealMeshes.h"
 
 #include <gtest/gtest.h>
@@ -151,4 +152,29 @@ TEST(VisualError, IsDistanceAndRoughnessWithASign)
   const Eigen::VectorXd twice =
     cartan::VisualError(mesh, sphere.Positions, Points(1.2 * sphere.Positions), 0.0);
   EXPECT_LT((twice - 2.0 * rough).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+TEST(QualitySearch, FindsTheFewestBitsAndAnchors)
+{
+  // An error that halves with each bit, and with each doubling of the anchors.
+  const auto errorOf = [](cartan::HighPassQuality quality)
+  { return std::ldexp(1.0, -quality.Bits) / quality.Anchors; };
+  // 1 / 16 / 20 is the first below .004; half the anchors would do with .0062 alone.
+  cartan::HighPassQuality found = cartan::FewestBitsAndAnchors(errorOf, 0.004, { 20, 1, 100 });
+  EXPECT_EQ(found.Bits, 4);
+  EXPECT_EQ(found.Anchors, 20);
+  found = cartan::FewestBitsAndAnchors(errorOf, 0.0063, { 20, 1, 100 });
+  EXPECT_EQ(found.Bits, 3);
+  EXPECT_EQ(found.Anchors, 20);
+  // Many points: anchors are cheaper than a bit, one bit less with twice of them.
+  found = cartan::FewestBitsAndAnchors(errorOf, 0.004, { 20, 1, 100000 });
+  EXPECT_EQ(found.Bits, 3);
+  EXPECT_EQ(found.Anchors, 40);
+  // Anchors that do not matter go, down to one for each component.
+  const auto bitsAlone = [](cartan::HighPassQuality quality)
+  { return std::ldexp(1.0, -quality.Bits); };
+  found = cartan::FewestBitsAndAnchors(bitsAlone, 0.1, { 20, 2, 100 });
+  EXPECT_EQ(found.Bits, 4);
+  EXPECT_EQ(found.Anchors, 2);
+  EXPECT_THROW(cartan::FewestBitsAndAnchors(bitsAlone, 1e-9, { 20, 2, 100 }), cartan::Error);
 }

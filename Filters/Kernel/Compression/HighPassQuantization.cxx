@@ -115,11 +115,8 @@ void HighPassCoder::Factorize(SolverBackend backend, const ExecutionContext& con
       context);
 }
 
-HighPassCode HighPassCoder::Encode(const Points& points, int bits) const
+Eigen::AlignedBox3d HighPassCoder::BoxOf(const Points& points) const
 {
-  HighPassCode code;
-  code.Bits = bits;
-  code.Anchors = this->AnchorVertices;
   Eigen::AlignedBox3d box;
   for (int v = 0; v < this->Mesh->NumberOfVertices(); ++v)
   {
@@ -128,12 +125,32 @@ HighPassCode HighPassCoder::Encode(const Points& points, int bits) const
       box.extend(points.row(v).transpose());
     }
   }
-  code.Corner = box.min();
-  code.Side = box.sizes().maxCoeff();
+  return box;
+}
+
+HighPassScale HighPassScale::Joined(const HighPassScale& other) const
+{
+  return { std::max(this->Side, other.Side), std::min(this->Low, other.Low),
+    std::max(this->High, other.High) };
+}
+
+HighPassScale HighPassCoder::ScaleOf(const Points& points) const
+{
+  const Points deltas = this->Reconstruction->GetOperator().Apply(*this->Mesh, points);
+  return { this->BoxOf(points).sizes().maxCoeff(), deltas.minCoeff(), deltas.maxCoeff() };
+}
+
+HighPassCode HighPassCoder::Encode(const Points& points, int bits, const HighPassScale& scale) const
+{
+  HighPassCode code;
+  code.Bits = bits;
+  code.Anchors = this->AnchorVertices;
+  code.Corner = this->BoxOf(points).min();
+  code.Side = scale.Side;
   const double unit = code.Side > 0.0 ? code.Side : 1.0;
   const Points deltas = this->Reconstruction->GetOperator().Apply(*this->Mesh, points) / unit;
-  code.Low = deltas.minCoeff();
-  code.Range = deltas.maxCoeff() - code.Low;
+  code.Low = scale.Low / unit;
+  code.Range = scale.High / unit - code.Low;
   code.Deltas.setZero(points.rows(), 3);
   for (int v = 0; v < this->Mesh->NumberOfVertices(); ++v)
   {

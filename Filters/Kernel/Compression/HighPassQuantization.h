@@ -42,6 +42,17 @@ struct HighPassCode
   double BitsPerVertex(const TriangleMesh& mesh) const;
 };
 
+/// The lengths in which codes are given, so that several may share them.
+struct HighPassScale
+{
+  double Side = 0.0; ///< the longest side of the bounding box
+  double Low = 0.0;  ///< the smallest differential coordinate
+  double High = 0.0; ///< the largest
+
+  /// The smallest scale that is enough for both.
+  HighPassScale Joined(const HighPassScale& other) const;
+};
+
 /// Makes and decodes codes of a connectivity: one factorization serves all precisions and
 /// all surfaces of it.
 class HighPassCoder
@@ -56,7 +67,14 @@ public:
   HighPassCoder(std::shared_ptr<const TriangleMesh> mesh, std::vector<int> anchors,
     SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
 
-  HighPassCode Encode(const Points& points, int bits) const;
+  HighPassCode Encode(const Points& points, int bits) const
+  {
+    return this->Encode(points, bits, this->ScaleOf(points));
+  }
+
+  /// In a scale of several surfaces, this one among them.
+  HighPassCode Encode(const Points& points, int bits, const HighPassScale& scale) const;
+  HighPassScale ScaleOf(const Points& points) const;
 
   /// Vertices in no triangle get the corner of the box.
   Points Decode(const HighPassCode& code, const ExecutionContext& context = {}) const;
@@ -65,6 +83,7 @@ public:
   std::size_t GetBytes() const;
 
 private:
+  Eigen::AlignedBox3d BoxOf(const Points& points) const;
   void Factorize(SolverBackend backend, const ExecutionContext& context);
 
   std::shared_ptr<const TriangleMesh> Mesh;
