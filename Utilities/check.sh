@@ -7,7 +7,8 @@
 #   tests    Utilities/test.sh: all tests of a release build, warnings are errors
 #   tidy     clang-tidy on the kernel
 #   asan     kernel and filter tests with AddressSanitizer and UndefinedBehaviorSanitizer,
-#            without plugin, Python and CHOLMOD
+#            without plugin, Python and CHOLMOD; and libFuzzer for a minute on the
+#            decoder of compressed surfaces
 #   tsan     filter tests with ThreadSanitizer and VTK's STDThread backend
 #
 # A stage that fails, or cannot run, does not stop the others. The time of each is
@@ -62,7 +63,11 @@ tidy()
     sed '/^[0-9]* warnings\? generated\.$/d'
 }
 
-asan() { sanitizer asan; }
+asan()
+{
+  sanitizer asan
+  Utilities/fuzz_files.sh 60
+}
 
 tsan() { sanitizer tsan; }
 
