@@ -5,7 +5,7 @@
 set(paraview_components RemotingCore pqApplicationComponents)
 set(vtk_components
   CommonCore CommonDataModel CommonExecutionModel CommonMath CommonSystem
-  FiltersCore FiltersExtraction ParallelCore
+  FiltersCore FiltersExtraction IOCore ParallelCore
   CommonComputationalGeometry CommonTransforms FiltersGeometry FiltersModeling FiltersSources IOXML # the tests
   TestingCore
   WrappingPythonCore)
