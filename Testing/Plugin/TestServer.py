@@ -1,4 +1,4 @@
-"""The filters run in a pvserver that a client is connected to."""
+"""The filters run in a pvserver that a client is connected to: the same numbers and picture."""
 import os
 import shutil
 import socket
@@ -7,8 +7,10 @@ import sys
 
 import cartan_testing
 from paraview import simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
 
-from plugin_testing import check, check_close, mark_ends, open_bar, refresh
+from plugin_testing import check, check_close, mark_ends, open_bar, output, refresh
 
 
 def free_port():
@@ -42,8 +44,24 @@ def use_filters():
     change = simple.VolumeChange(Input=bent, Reference=bar)
     refresh(change)
     check(change.RelativeVolumeChange < -1e-3, "volume")
+    return vtk_to_numpy(output(bent).GetPoints().GetData()), change.RelativeVolumeChange, draw(change)
 
 
+def draw(surface):
+    """The pixels of a picture of a surface, colored by what has changed."""
+    view = simple.CreateRenderView(ViewSize=[300, 200])
+    simple.ColorBy(simple.Show(surface, view), ("POINTS", "AreaRatio"))
+    simple.ResetCamera(view)
+    path = cartan_testing.output_path("TestServer.png")
+    simple.SaveScreenshot(path, view)
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+
+
+simple.LoadPlugin(cartan_testing.plugin_path(), remote=False)
+here = use_filters()
 port = free_port()
 server = subprocess.Popen([find_pvserver(), "--server-port=%d" % port],
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -54,7 +72,11 @@ try:
     simple.Connect("localhost", port)
     for remote in (True, False):
         simple.LoadPlugin(cartan_testing.plugin_path(), remote=remote)
-    use_filters()
+    there = use_filters()
+    check((here[0] == there[0]).all(), "the same points")
+    check(here[1] == there[1], "the same number")
+    check(here[2].shape == there[2].shape and here[2].std() > 10, "a picture")
+    check(abs(here[2].astype(int) - there[2]).max() <= 2, "the same picture")
 except BaseException:
     server.kill()
     raise
