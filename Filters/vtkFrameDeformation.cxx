@@ -18,18 +18,19 @@ namespace
 std::unique_ptr<cartan::VolumeModel> NewModel(
   const cartan::HandleProblem& problem, const cartan::ExecutionContext& context)
 {
-  const cartan::RayTree tree(problem.Mesh->GetTriangles(), *problem.Rest, context.Part(0.0, 0.3));
+  const cartan::TriangleMesh& mesh = *problem.GetParted();
+  const cartan::RayTree tree(mesh.GetTriangles(), *problem.Rest, context.Part(0.0, 0.3));
   return std::make_unique<cartan::VolumeModel>(cartan::MeasureVolumeModel(
-    *problem.Mesh, *problem.Rest,
+    mesh, *problem.Rest,
     [&tree](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
     { return tree.FirstHit(from, direction); },
     context.Part(0.3, 1.0)));
 }
 
-/// Of the mesh that is solved on: which slivers it is without depends on the handles.
+/// Of the mesh without slivers: which slivers it is without depends on the handles.
 cartan::ContentKey KeyOfModel(const cartan::HandleProblem& problem, cartan::ContentKey surface)
 {
-  const cartan::Triangles& triangles = problem.Mesh->GetTriangles();
+  const cartan::Triangles& triangles = problem.GetParted()->GetTriangles();
   return problem.Whole
     ? surface.AddBytes(triangles.data(), static_cast<std::size_t>(triangles.size()) * sizeof(int))
     : surface;

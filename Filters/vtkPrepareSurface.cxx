@@ -45,7 +45,7 @@ void vtkPrepareSurface::Execute(cartan::FilterRun& run)
     cartan::RepairSurface(soup.Positions, soup.Faces, options, run.Context().Part(0.1, 0.9));
   repaired.Counts.CollapsedTriangles += static_cast<int>(soup.Repeated.GetCount());
   cartan::WritePreparedSurface(
-    run.Input(), soup, repaired, this->AverageMergedArrays, run.Output());
+    run.Input(), soup, repaired, this->AverageMergedArrays, this->JoinCopies, run.Output());
   this->Report = repaired.Counts.Describe();
 }
 
@@ -60,6 +60,7 @@ void vtkPrepareSurface::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DropDoubledTriangles: " << this->DropDoubledTriangles << "\n";
   os << indent << "OrientConsistently: " << this->OrientConsistently << "\n";
   os << indent << "CutNonManifold: " << this->CutNonManifold << "\n";
+  os << indent << "JoinCopies: " << this->JoinCopies << "\n";
   os << indent << "OrientOutwards: " << this->OrientOutwards << "\n";
   os << indent << "AlternateNested: " << this->AlternateNested << "\n";
   os << indent << "MinimumComponentArea: " << this->MinimumComponentArea << "\n";

@@ -35,8 +35,10 @@
  * - point array `OriginalPointIds` (vtkIdType): the input's point; of merged ones
  *   the first.
  * - point array `CopyOf` (vtkIdType): the first of the copies that a cut made of
- *   one point; the point itself where there is no cut. Copies may part when the
- *   surface is deformed.
+ *   one point; the point itself where there is no cut.
+ * - point array `JoinedPoints` (vtkIdType), unless JoinCopies is off: the same for points
+ *   with copies, -1 for others, and what the input has there. Deformations hold points
+ *   of equal value >= 0 together that are in the same place.
  * - cell array `OriginalCellIds` (vtkIdType): the input's cell, -1 in filled holes.
  * - field array `PreparedPointIds` (vtkIdType), a value per point of the input:
  *   the point it has become, -1 if its component was removed.
@@ -150,6 +152,17 @@ public:
 
   ///@{
   /**
+   * Whether deformations hold the copies of a point together, so that a limb on one
+   * point or edge follows what it hangs on: as the array `JoinedPoints` says then. Off,
+   * there is no such array, and copies may part. On by default.
+   */
+  vtkSetMacro(JoinCopies, bool);
+  vtkGetMacro(JoinCopies, bool);
+  vtkBooleanMacro(JoinCopies, bool);
+  ///@}
+
+  ///@{
+  /**
    * Whether to turn closed components outward. With AlternateNested those inside
    * an odd number of others face inward: they are walls of cavities. Turn that
    * off when the inner ones are bodies of their own. Both on by default.
@@ -233,6 +246,7 @@ private:
   bool DropDoubledTriangles = true;
   bool OrientConsistently = true;
   bool CutNonManifold = true;
+  bool JoinCopies = true;
   bool OrientOutwards = true;
   bool AlternateNested = true;
   double MinimumComponentArea = 0.0;

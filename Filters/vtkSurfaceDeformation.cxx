@@ -2,12 +2,12 @@
 #include "vtkSurfaceDeformation.h"
 
 #include "Bridge/MotionTable.h"
-#include "Bridge/PointArrays.h"
 #include "Bridge/Preparation.h"
+#include "Bridge/PreparedSurface.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Algebra/ConstrainedSolver.h"
-#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/HandleCurve.h"
+#include "Kernel/Deformation/JoinedVertices.h"
 #include "Kernel/Deformation/RoundingCheck.h"
 #include "Kernel/Deformation/SliverRemoval.h"
 #include "vtkHandleMotion.h"
@@ -30,32 +30,6 @@ namespace
 {
 /// More boxes than anybody grasps one by one; each update sends them to the window.
 constexpr vtkIdType MaximumNumberOfBounds = 1000;
-
-void AddTransformArrays(
-  const cartan::DeformedSurface& result, bool frameChange, bool rotationVector, vtkPolyData* output)
-{
-  const Eigen::Index size = result.Transforms.rows();
-  if (frameChange)
-  {
-    Eigen::VectorXd change(size);
-    for (Eigen::Index v = 0; v < size; ++v)
-    {
-      change[v] = (cartan::MatrixAt(result.Transforms, v) - Eigen::Matrix3d::Identity()).norm();
-    }
-    cartan::AddPointArray(output, "FrameChange", change);
-  }
-  if (rotationVector)
-  {
-    cartan::Points vectors(size, 3);
-    for (Eigen::Index v = 0; v < size; ++v)
-    {
-      vectors.row(v) = cartan::VectorFromRotation(
-        cartan::ProjectOnRotations(cartan::MatrixAt(result.Transforms, v)))
-                         .transpose();
-    }
-    cartan::AddPointArray(output, "RotationVector", vectors);
-  }
-}
 }
 
 class vtkSurfaceDeformation::Internals
@@ -296,13 +270,11 @@ cartan::HandleProblem vtkSurfaceDeformation::MakeProblem(vtkPolyData* input,
   if (!this->ConstraintWeightArrayName.empty())
   {
     problem.SoftWeights = cartan::ReadSoftWeights(input, this->ConstraintWeightArrayName, handles);
-    if (this->ScaleConstraintWeights)
-    {
-      const Eigen::ArrayXd shares =
-        cartan::HandleCurveShares(*surface->Mesh, *surface->Positions, problem.Handle);
-      const Eigen::ArrayXd weights = problem.SoftWeights;
-      problem.SoftWeights = weights.isInf().select(weights, weights * shares.sqrt());
-    }
+  }
+  cartan::HoldTogether(cartan::ReadJoinedPoints(input), problem);
+  if (this->ScaleConstraintWeights)
+  {
+    cartan::ScaleSoftWeights(problem);
   }
   return problem;
 }
@@ -315,6 +287,7 @@ std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::Filt
   key.AddBytes(moving.data(), moving.size() * sizeof(int));
   key.Add(this->ConstraintWeightArrayName);
   key.Add(cartan::KeyOfPointArray(input, this->ConstraintWeightArrayName).GetValue());
+  key.Add(cartan::KeyOfPointArray(input, cartan::JoinedPoints).GetValue());
   this->AddSettings(key);
   const bool isChecked = input->GetNumberOfPoints() <= this->RoundingCheckLimit;
   key.Add(static_cast<std::uint64_t>(isChecked));
@@ -331,9 +304,10 @@ std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::Filt
     {
       const double end = 0.75 * this->ProgressBeforeMotion();
       const double middle = isChecked ? 0.5 * (0.12 + end) : end;
-      auto fresh = make(cartan::WithoutSlivers(this->MakeProblem(input, surface, handles, moving),
-                          run.Context().Part(0.1, 0.12)),
-        run.Context().Part(0.12, middle));
+      auto problem = cartan::WithoutSlivers(
+        this->MakeProblem(input, surface, handles, moving), run.Context().Part(0.1, 0.12));
+      auto fresh =
+        make(cartan::WithJoinedVertices(std::move(problem)), run.Context().Part(0.12, middle));
       this->State->Factorizations += fresh->Method.Deformer->GetNumberOfFactorizations();
       if (isChecked)
       {
@@ -418,7 +392,7 @@ void vtkSurfaceDeformation::Deform(cartan::FilterRun& run)
 
   run.Warn(
     cartan::WriteSurface(*surface, prepared->Result.Positions, input, run.Output(), run.Context()));
-  AddTransformArrays(
+  cartan::AddTransformArrays(
     prepared->Result, this->GenerateFrameChange, this->GenerateRotationVector, run.Output());
   prepared->Method.Decorate(prepared->Result, run);
   this->State->FreePoints = deformer.GetNumberOfFreeVertices();

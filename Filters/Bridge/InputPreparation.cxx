@@ -32,7 +32,7 @@ vtkSmartPointer<vtkPolyData> ApplyPreparation(
   const InputPreparation& preparation, vtkPolyData* input)
 {
   auto prepared = vtkSmartPointer<vtkPolyData>::New();
-  WritePreparedSurface(input, preparation.Soup, preparation.Repaired, false, prepared);
+  WritePreparedSurface(input, preparation.Soup, preparation.Repaired, false, true, prepared);
   return prepared;
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Bridge/Preparation.h"
 
+#include "Bridge/PointArrays.h"
+#include "Kernel/Algebra/Rotation.h"
+
 namespace cartan
 {
 std::size_t Preparation::GetBytes() const
@@ -25,6 +28,31 @@ void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
     moved.Method.Deformer->Deform(
       targets, fields.Transforms, moved.Result, context.Part(part, 1.0));
     run.Warn(CompareResults(prepared.Problem, prepared.Result, moved.Result, fields).Describe());
+  }
+}
+
+void AddTransformArrays(
+  const DeformedSurface& result, bool frameChange, bool rotationVector, vtkPolyData* output)
+{
+  const Eigen::Index size = result.Transforms.rows();
+  if (frameChange)
+  {
+    Eigen::VectorXd change(size);
+    for (Eigen::Index v = 0; v < size; ++v)
+    {
+      change[v] = (MatrixAt(result.Transforms, v) - Eigen::Matrix3d::Identity()).norm();
+    }
+    AddPointArray(output, "FrameChange", change);
+  }
+  if (rotationVector)
+  {
+    Points vectors(size, 3);
+    for (Eigen::Index v = 0; v < size; ++v)
+    {
+      vectors.row(v) =
+        VectorFromRotation(ProjectOnRotations(MatrixAt(result.Transforms, v))).transpose();
+    }
+    AddPointArray(output, "RotationVector", vectors);
   }
 }
 }

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <memory>
 
+class vtkPolyData;
+
 namespace cartan
 {
 /// What is kept of a surface, its handles and the settings between motions.
@@ -26,4 +28,9 @@ struct Preparation
 /// odd, and of what differs.
 void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
   const ComparedFields& fields, FilterRun& run, const ExecutionContext& context);
+
+/// Adds the point arrays FrameChange, the Frobenius norm of what the transforms add to the
+/// identity, and RotationVector, in radians.
+void AddTransformArrays(
+  const DeformedSurface& result, bool frameChange, bool rotationVector, vtkPolyData* output);
 }

@@ -25,6 +25,7 @@ namespace cartan
 const char* const OriginalPointIds = "OriginalPointIds";
 const char* const OriginalCellIds = "OriginalCellIds";
 const char* const CopyOf = "CopyOf";
+const char* const JoinedPoints = "JoinedPoints";
 const char* const PreparedPointIds = "PreparedPointIds";
 
 namespace
@@ -302,6 +303,28 @@ void WriteCells(vtkPolyData* input, const TriangleSoup& read, const RepairedSurf
   output->GetCellData()->AddArray(IdArray(OriginalCellIds, cells.Original));
 }
 
+/// For each point the first of its copies, -1 where it has none; where copies were joined
+/// before, as then.
+std::vector<vtkIdType> JoinCopies(const RepairedSurface& repaired, vtkPolyData* input)
+{
+  const Eigen::VectorXd before = ReadJoinedPoints(input);
+  std::vector<vtkIdType> joined(repaired.CopyOf.size(), -1);
+  for (std::size_t v = 0; v < joined.size(); ++v)
+  {
+    const int first = repaired.CopyOf[v];
+    if (first != static_cast<int>(v))
+    {
+      joined[v] = joined[first] = first;
+    }
+  }
+  for (std::size_t v = 0; v < joined.size() && before.size(); ++v)
+  {
+    const double value = before[repaired.OriginalPoints[v]];
+    joined[v] = value >= 0.0 ? static_cast<vtkIdType>(value) : joined[v];
+  }
+  return joined;
+}
+
 void WriteReport(const RepairedSurface& repaired, vtkFieldData* fields)
 {
   fields->AddArray(IdArray(PreparedPointIds, repaired.PreparedPoints));
@@ -317,7 +340,7 @@ void WriteReport(const RepairedSurface& repaired, vtkFieldData* fields)
 }
 
 void WritePreparedSurface(vtkPolyData* input, const TriangleSoup& read,
-  const RepairedSurface& repaired, bool averages, vtkPolyData* output)
+  const RepairedSurface& repaired, bool averages, bool joins, vtkPolyData* output)
 {
   const std::vector<vtkIdType> from(repaired.OriginalPoints.begin(), repaired.OriginalPoints.end());
   vtkNew<vtkIdList> ids;
@@ -336,8 +359,29 @@ void WritePreparedSurface(vtkPolyData* input, const TriangleSoup& read,
   }
   output->GetPointData()->AddArray(IdArray(OriginalPointIds, from));
   output->GetPointData()->AddArray(IdArray(CopyOf, repaired.CopyOf));
+  output->GetPointData()->RemoveArray(JoinedPoints);
+  if (joins)
+  {
+    output->GetPointData()->AddArray(IdArray(JoinedPoints, JoinCopies(repaired, input)));
+  }
   WriteCells(input, read, repaired, output);
   output->GetFieldData()->ShallowCopy(input->GetFieldData());
   WriteReport(repaired, output->GetFieldData());
+}
+
+Eigen::VectorXd ReadJoinedPoints(vtkPolyData* input)
+{
+  vtkDataArray* array = input->GetPointData()->GetArray(JoinedPoints);
+  if (!array || array->GetNumberOfComponents() != 1 ||
+    array->GetNumberOfTuples() != input->GetNumberOfPoints())
+  {
+    return {};
+  }
+  Eigen::VectorXd ids(array->GetNumberOfTuples());
+  for (vtkIdType v = 0; v < array->GetNumberOfTuples(); ++v)
+  {
+    ids[v] = array->GetTuple1(v);
+  }
+  return ids;
 }
 }

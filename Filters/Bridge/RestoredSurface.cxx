@@ -192,7 +192,7 @@ void CarryArrays(vtkDataSetAttributes* prepared, const std::vector<vtkIdType>& o
   const std::vector<vtkIdType>& preparedIds, vtkDataSetAttributes* original,
   vtkDataSetAttributes* output)
 {
-  const std::set<std::string> own = { OriginalPointIds, OriginalCellIds, CopyOf };
+  const std::set<std::string> own = { OriginalPointIds, OriginalCellIds, CopyOf, JoinedPoints };
   for (int index = 0; index < prepared->GetNumberOfArrays(); ++index)
   {
     vtkAbstractArray* array = prepared->GetAbstractArray(index);

@@ -158,7 +158,8 @@ Parameters PrepareParameters()
     Make("MaximumHoleEdges", &Class::SetMaximumHoleEdges, Integer(0, 40)),
     Make("MaximumHoleLength", &Class::SetMaximumHoleLength, Length(1e-2, 10.0), Kind::Scalar, 1),
     Make("FlipEdges", &Class::SetFlipEdges, Flag()),
-    Make("FlipAngle", &Class::SetFlipAngle, Real(0.0, 180.0)) };
+    Make("FlipAngle", &Class::SetFlipAngle, Real(0.0, 180.0)),
+    Make("JoinCopies", &Class::SetJoinCopies, Flag()) };
 }
 
 Parameters MorphParameters()

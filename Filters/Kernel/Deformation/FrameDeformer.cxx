@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/FrameDeformer.h"
 
+#include "Deformation/JoinedVertices.h"
 #include "Measure/VolumeClosing.h"
 
 #include <cmath>
@@ -224,7 +225,8 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
 void FrameDeformer::ScaleFrames(
   const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context)
 {
-  const TriangleMesh& mesh = *this->Problem.Mesh;
+  const TriangleMesh& mesh = *this->Problem.GetParted();
+  FollowJoined(this->Problem.JoinedWith, result.Positions);
   if (this->RestHeights.size() == 0)
   {
     this->RestHeights = ColumnHeights(mesh, *this->Problem.Rest, this->Model->LocalDepth, context);
@@ -253,8 +255,16 @@ void FrameDeformer::ScaleFrames(
 void FrameDeformer::CloseVolumes(Points& positions)
 {
   const HandleLaplacian& system = *this->PositionSystem;
-  const auto solve = [&system](const Points& gradient)
+  const std::vector<int>& joinedWith = this->Problem.JoinedWith;
+  const auto solve = [&system, &joinedWith](Points gradient)
   {
+    for (std::size_t v = 0; v < joinedWith.size(); ++v)
+    {
+      if (joinedWith[v] != static_cast<int>(v))
+      {
+        gradient.row(joinedWith[v]) += gradient.row(static_cast<Eigen::Index>(v));
+      }
+    }
     Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
     for (int i = 0; i < system.NumberOfUnknowns(); ++i)
     {
@@ -266,10 +276,19 @@ void FrameDeformer::CloseVolumes(Points& positions)
     {
       direction.row(system.Vertex(i)) = solution.row(i);
     }
+    FollowJoined(joinedWith, direction);
     return direction;
   };
-  const IdSample notClosed = cartan::CloseVolumes(
-    *this->Problem.Mesh, this->Model->EnclosesVolume, this->Model->Volumes, solve, positions);
+  // Bodies that hang together are closed each by a step of its own, between which
+  // joined vertices must follow one of them: each round leaves the others less.
+  const int rounds = joinedWith.empty() ? 1 : 20;
+  IdSample notClosed;
+  for (int round = 0; round < rounds; ++round)
+  {
+    FollowJoined(joinedWith, positions);
+    notClosed = cartan::CloseVolumes(*this->Problem.GetParted(), this->Model->EnclosesVolume,
+      this->Model->Volumes, solve, positions);
+  }
   if (!notClosed.IsEmpty())
   {
     this->Warning += (this->Warning.empty() ? "" : " ");

@@ -38,7 +38,7 @@ public:
   void SetVolumeCorrection(VolumeCorrection correction) { this->Correction = correction; }
   void SetCloseVolume(bool close) { this->Close = close; }
 
-  /// Of HandleProblem::Mesh, without slivers. Needed for any volume correction and
+  /// Of HandleProblem::GetParted(), without slivers. Needed for any volume correction and
   /// for closing; empty where there is none. Has no effect on components that enclose
   /// no volume.
   void SetVolumeModel(std::shared_ptr<const VolumeModel> model)

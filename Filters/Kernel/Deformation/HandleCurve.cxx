@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/HandleCurve.h"
 
+#include "Deformation/JoinedVertices.h"
+
 #include <unordered_map>
 
 namespace cartan
@@ -62,5 +64,17 @@ Eigen::VectorXd HandleCurveShares(
     }
   }
   return shares;
+}
+
+void ScaleSoftWeights(HandleProblem& problem)
+{
+  if (problem.SoftWeights.size() == 0)
+  {
+    return;
+  }
+  Eigen::VectorXd shares = HandleCurveShares(*problem.Mesh, *problem.Rest, problem.Handle);
+  AddShares(problem.JoinedWith, shares);
+  const Eigen::ArrayXd weights = problem.SoftWeights;
+  problem.SoftWeights = weights.isInf().select(weights, weights * shares.array().sqrt());
 }
 }

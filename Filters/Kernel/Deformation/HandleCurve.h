@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Mesh/TriangleMesh.h"
+#include "Deformation/HandleProblem.h"
 
 namespace cartan
 {
@@ -20,4 +20,8 @@ namespace cartan
 /// the number of vertices of the handle.
 Eigen::VectorXd HandleCurveShares(
   const TriangleMesh& mesh, const Points& points, const std::vector<int>& handle);
+
+/// Multiplies the finite soft weights of a problem, if it has some, by the root of these shares;
+/// what stands for joined vertices has the shares of all of them.
+void ScaleSoftWeights(HandleProblem& problem);
 }

@@ -19,7 +19,13 @@ struct HandleProblem
   /// The mesh with its slivers, for what is measured on it; nothing when Mesh is
   /// that (see WithoutSlivers).
   std::shared_ptr<const TriangleMesh> Whole;
-  std::vector<Rider> Riders;          ///< vertices of Whole that are in no triangle of Mesh
+  std::vector<Rider> Riders; ///< vertices of Whole that are in no triangle of Mesh
+  /// Empty, or the vertex that each one is held together with as one unknown: itself
+  /// where it stands for others, or alone (see HoldTogether). #V.
+  std::vector<int> JoinedWith;
+  /// Mesh with its joined vertices apart, a manifold; nothing when Mesh is that (see
+  /// WithJoinedVertices).
+  std::shared_ptr<const TriangleMesh> Parted;
   std::shared_ptr<const Points> Rest; ///< #V x 3, best centered on the origin
   std::vector<int> Handle;            ///< #V, the handle of each vertex; 0 is free
   /// The handles that may move, in increasing order. The others keep their
@@ -46,14 +52,21 @@ struct HandleProblem
 
   const std::shared_ptr<const TriangleMesh>& GetWhole() const
   {
-    return this->Whole ? this->Whole : this->Mesh;
+    return this->Whole ? this->Whole : this->GetParted();
+  }
+
+  const std::shared_ptr<const TriangleMesh>& GetParted() const
+  {
+    return this->Parted ? this->Parted : this->Mesh;
   }
 
   /// The memory that it holds, without the whole mesh and the rest positions.
   std::size_t GetBytes() const
   {
-    return TotalBytes(this->Handle, this->Moving, this->SoftWeights, this->Riders) +
-      (this->Whole ? this->Mesh->GetBytes() : 0);
+    return TotalBytes(
+             this->Handle, this->Moving, this->SoftWeights, this->Riders, this->JoinedWith) +
+      (this->Whole ? this->GetParted()->GetBytes() : 0) +
+      (this->Parted ? this->Mesh->GetBytes() : 0);
   }
 };
 

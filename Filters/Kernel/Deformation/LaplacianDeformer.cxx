@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cartan
 {
@@ -87,6 +88,7 @@ void LaplacianDeformer::FindRings()
   }
   if (this->Rotations == LaplacianRotations::Implicit)
   {
+    std::vector<int> lastRow(this->System.NumberOfLocals(), -1);
     std::vector<int> local(mesh.NumberOfVertices(), -1);
     for (int i = 0; i < this->System.NumberOfLocals(); ++i)
     {
@@ -95,10 +97,14 @@ void LaplacianDeformer::FindRings()
     for (int row = 0; row < this->NumberOfRows(); ++row)
     {
       this->Rings.push_back(ClosedRing(mesh, vertices[row]));
-      for (int& vertex : this->Rings.back())
+      std::vector<int>& ring = this->Rings.back();
+      for (int& vertex : ring)
       {
         vertex = local[vertex];
       }
+      // Several edges may lead to one vertex where vertices are joined.
+      const auto isKnown = [&lastRow, row](int i) { return std::exchange(lastRow[i], row) == row; };
+      ring.erase(std::remove_if(ring.begin(), ring.end(), isKnown), ring.end());
     }
   }
 }

@@ -98,29 +98,23 @@ std::vector<RigidCells::Rim> RigidCells::FindRims(const HandleProblem& problem) 
     return cornerWeights(triangle, corners[0] == v ? 0 : corners[1] == v ? 1 : 2);
   };
   // Sites of a ring's vertices are its cell's spokes: the left one is the next.
-  std::vector<Rim> rims;
-  rims.reserve(this->Spokes.size());
+  std::vector<Rim> rims(this->Spokes.size(), { -1, -1, 0.0, 0.0 });
   for (int cell = 0; cell < this->Count; ++cell)
   {
     const int v = this->Vertices[cell];
-    const int begin = this->SpokeOffsets[cell];
-    const int count = this->SpokeOffsets[cell + 1] - begin;
-    for (int k = 0; k < count; ++k)
+    // From a directed edge of v to its spoke.
+    const int toSpoke = this->SpokeOffsets[cell] - mesh.RingBegin(v);
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
-      const int d = mesh.RingBegin(v) + k;
-      const int before = (k + count - 1) % count;
-      Rim rim = { -1, -1, 0.0, 0.0 };
-      if (mesh.LeftTriangle(d) >= 0)
+      const int next = mesh.NextAround(v, d);
+      if (next >= 0)
       {
-        rim.Left = this->Spokes[begin + (k + 1) % count].Neighbor;
-        rim.LeftWeight = weightOpposite(mesh.LeftTriangle(d), mesh.Opposite(d));
+        Rim& rim = rims[d + toSpoke];
+        rim.Left = this->Spokes[next + toSpoke].Neighbor;
+        rim.LeftWeight = weightOpposite(mesh.LeftTriangle(d), mesh.Neighbor(next));
         rim.RimWeight = weightOpposite(mesh.LeftTriangle(d), v);
+        rims[next + toSpoke].Right = this->Spokes[d + toSpoke].Neighbor;
       }
-      if (mesh.LeftTriangle(mesh.RingBegin(v) + before) >= 0)
-      {
-        rim.Right = this->Spokes[begin + before].Neighbor;
-      }
-      rims.push_back(rim);
     }
   }
   return rims;

@@ -45,9 +45,21 @@ public:
     : Mesh(problem.Mesh)
     , Rest(*problem.Rest)
     , Handle(problem.Handle)
+    , JoinedWith(problem.JoinedWith)
     , IsSoft(problem.SoftWeights.size() > 0)
     , IsFirst(problem.Handle.size(), 0)
   {
+    if (!this->JoinedWith.empty())
+    {
+      this->IsJoined.assign(this->JoinedWith.size(), 0);
+    }
+    for (std::size_t v = 0; v < this->JoinedWith.size(); ++v)
+    {
+      const int first = this->JoinedWith[v];
+      const bool isJoined = first != static_cast<int>(v);
+      this->IsJoined[v] = this->IsJoined[v] || isJoined;
+      this->IsJoined[first] = this->IsJoined[first] || isJoined;
+    }
     if (this->Mesh->NumberOfComponents() < 2)
     {
       return; // the number of a single one is certain
@@ -103,7 +115,17 @@ private:
   /// of that: from the triangle's third vertex to its second.
   int Across(int d) const { return this->Mesh->Next(this->Mesh->Twin(this->Mesh->Next(d))); }
 
-  bool MayGo(int v) const { return this->Handle[v] == 0 && !this->IsFirst[v]; }
+  bool MayGo(int v) const
+  {
+    return this->Handle[v] == 0 && !this->IsFirst[v] &&
+      (this->IsJoined.empty() || !this->IsJoined[v]);
+  }
+
+  /// Whether vertices are one for the method, so that no edge may run between them.
+  bool AreOne(int v, int w) const
+  {
+    return v == w || (!this->IsJoined.empty() && this->JoinedWith[v] == this->JoinedWith[w]);
+  }
 
   bool IsRingLocked(int v) const
   {
@@ -161,8 +183,8 @@ private:
   {
     const int a = this->Mesh->Neighbor(d);
     const int b = this->Mesh->Neighbor(this->Mesh->NextAround(v, d));
-    return !this->IsSoft && !this->IsFirst[v] && this->Handle[v] == this->Handle[a] &&
-      this->Handle[v] == this->Handle[b];
+    return !this->IsSoft && !this->IsFirst[v] && (this->IsJoined.empty() || !this->IsJoined[v]) &&
+      this->Handle[v] == this->Handle[a] && this->Handle[v] == this->Handle[b];
   }
 
   /// The three triangles around v, one of which is a cap on the left of d, become one,
@@ -214,7 +236,7 @@ private:
   {
     const int a = this->Mesh->Neighbor(d);
     const int b = this->Mesh->Neighbor(this->Mesh->NextAround(v, d));
-    if (this->IsLocked[apex] || apex == v || this->AreNeighbors(v, apex) ||
+    if (this->IsLocked[apex] || this->AreOne(apex, v) || this->AreNeighbors(v, apex) ||
       !FlipImproves(this->At(a), this->At(b), this->At(v), this->At(apex), Flips))
     {
       return;
@@ -269,6 +291,10 @@ private:
     for (int d = this->Mesh->RingBegin(goes); d < this->Mesh->RingEnd(goes); ++d)
     {
       const int neighbor = this->Mesh->Neighbor(d);
+      if (neighbor != stays && this->AreOne(neighbor, stays))
+      {
+        return false;
+      }
       shared += neighbor != stays && this->AreNeighbors(neighbor, stays);
     }
     return shared == triangles;
@@ -370,6 +396,8 @@ private:
   std::shared_ptr<const TriangleMesh> Mesh;
   const Points& Rest;
   const std::vector<int>& Handle;
+  const std::vector<int>& JoinedWith;
+  std::vector<char> IsJoined; // with others; empty where all vertices are alone
   bool IsSoft;
   std::vector<char> IsFirst; // of a component, which gives it its number
   std::vector<char> IsLocked;

@@ -17,8 +17,8 @@ namespace cartan
 /// Geometry Processing, 2006), but where that would change the shape: the
 /// triangles' normals, of caps higher than 1 %, are more than 30 degrees apart.
 /// Vertices of handles stay in the mesh, but for that of a cap between two of the same
-/// handle, which hold it anyway; with soft weights all. The components keep their
-/// numbers. What
+/// handle, which hold it anyway; with soft weights all. Joined vertices stay, and no
+/// edge comes to run between them. The components keep their numbers. What
 /// splits a triangle goes first, the rest by length: the order of the vertices
 /// decides only between slivers of equal length that touch each other.
 ///

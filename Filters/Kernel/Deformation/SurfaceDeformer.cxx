@@ -2,6 +2,7 @@
 #include "Deformation/SurfaceDeformer.h"
 
 #include "Deformation/HandleLaplacian.h"
+#include "Deformation/JoinedVertices.h"
 
 namespace cartan
 {
@@ -40,6 +41,9 @@ void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
     this->Common->Follow(relative, wantTransforms, result);
   }
   this->Common->Restore(wantTransforms, result);
+  FollowJoined(this->Problem.JoinedWith, result.Positions);
+  FollowJoined(this->Problem.JoinedWith, result.Transforms);
+  FollowJoined(this->Problem.JoinedWith, result.FrameScale);
   CarryRiders(this->Problem.Riders, *this->Problem.Rest, result);
   PlaceRidersOfHandles(this->Problem, targets, result);
 }

@@ -173,9 +173,15 @@ SparseMatrix Laplacian(
     }
     std::sort(column.begin(), column.end());
     laplacian.startVec(i);
-    for (const auto& [row, value] : column)
+    for (std::size_t k = 0; k < column.size(); ++k)
     {
-      laplacian.insertBack(row, i) = value;
+      // Several edges may lead to one vertex where vertices are joined.
+      if (k + 1 < column.size() && column[k].first == column[k + 1].first)
+      {
+        column[k + 1].second += column[k].second;
+        continue;
+      }
+      laplacian.insertBack(column[k].first, i) = column[k].second;
     }
   }
   laplacian.finalize();

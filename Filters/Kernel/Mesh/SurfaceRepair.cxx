@@ -282,6 +282,13 @@ private:
         this->PreparedPoints[v] = this->Merged[v];
       }
     }
+    for (std::size_t v = 0; v < this->CopyOf.size(); ++v)
+    {
+      // Copies of points that a tolerance has merged may name points in other places.
+      int& original = this->OriginalPoints[v];
+      const int first = this->OriginalPoints[this->CopyOf[v]];
+      original = this->Input.row(original) == this->Input.row(first) ? original : first;
+    }
   }
 
   const Points& Input;

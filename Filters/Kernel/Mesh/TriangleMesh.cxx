@@ -290,7 +290,7 @@ void TriangleMesh::FindComponents()
 std::size_t TriangleMesh::GetBytes() const
 {
   return TotalBytes(this->Corners, this->RingOffsets, this->Neighbors, this->RingTriangles,
-    this->Twins, this->Components);
+    this->Twins, this->NextInFan, this->Components);
 }
 
 std::vector<char> TriangleMesh::Grounded() const

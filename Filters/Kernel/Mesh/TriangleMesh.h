@@ -17,7 +17,8 @@ namespace cartan
 /// outside. The ring of a boundary vertex starts at the boundary edge that has
 /// a triangle on its left and ends at the one that has none; the ring of an
 /// interior vertex starts at an arbitrary neighbor that depends on the
-/// triangles' order only.
+/// triangles' order only. Where vertices are joined (see Joined), a ring may be
+/// several such fans, one after the other, the open ones last.
 class TriangleMesh
 {
 public:
@@ -38,6 +39,15 @@ public:
 
   /// All that is wrong with triangles and points together.
   static MeshReport Check(const Points& points, Triangles triangles);
+
+  /// The same triangles on fewer vertices: vertex v becomes joinedWith[v] (#V), which
+  /// is itself where it stands for others, or alone. Two sides of the border that run
+  /// in opposite directions and come to lie on each other, with no third, are one edge
+  /// again; all others, and the interior, stay as they are. So fans may meet in a vertex,
+  /// and several edges may run between two vertices, each with its own twin: what sums
+  /// over rings or triangles sums over all of them. Other vertices' rings keep their
+  /// order. No triangle may have two vertices that are joined. O(#V + #T).
+  TriangleMesh Joined(const std::vector<int>& joinedWith) const;
 
   int NumberOfVertices() const { return static_cast<int>(this->RingOffsets.size()) - 1; }
   int NumberOfTriangles() const { return static_cast<int>(this->Corners.rows()); }
@@ -90,6 +100,10 @@ public:
     {
       return -1;
     }
+    if (!this->NextInFan.empty())
+    {
+      return this->NextInFan[d];
+    }
     return d + 1 < this->RingEnd(origin) ? d + 1 : this->RingBegin(origin);
   }
 
@@ -104,6 +118,9 @@ private:
   void MakeRings(std::vector<int>& corners, const std::vector<int>& lastCorners,
     const Triangles& triangles, MeshReport& report);
   void MakeTwins(const std::vector<int>& edgeOfCorner);
+  void AddFans(const int* begin, const int* end, const std::vector<int>& mates,
+    std::vector<int>& edgeOfCorner);
+  void AddFan(int start, const std::vector<int>& mates, std::vector<int>& edgeOfCorner);
   void FindComponents();
 
   Triangles Corners;
@@ -111,6 +128,7 @@ private:
   std::vector<int> Neighbors;           // #D
   std::vector<int> RingTriangles;       // #D
   std::vector<int> Twins;               // #D
+  std::vector<int> NextInFan;           // #D where a ring may be several fans, else empty
   std::vector<int> Components;          // #V
   int ComponentCount = 0;
 };

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Deformation/HandleProblem.h"
+
+namespace cartan
+{
+/// Finds which vertices are held together (HandleProblem::JoinedWith): those in the same
+/// place that have equal `ids` (#V or none; negative or NaN: alone), but for those in no
+/// triangle, and those with a neighbor among them. The first stands for them, of those
+/// in handles if there are such. All of them are in its handle then, with the largest
+/// of their soft weights. Throws Error(BadInput) where they are in several handles.
+void HoldTogether(const Eigen::VectorXd& ids, HandleProblem& problem);
+
+/// Adds to the share of each vertex those of the vertices that it stands for: #V.
+void AddShares(const std::vector<int>& joinedWith, Eigen::VectorXd& shares);
+
+/// The problem on a mesh with one vertex for all that are held together: with P, which
+/// gives all of them its values, and any matrix A that is a sum over edges or
+/// triangles, a method that does not know of joined vertices solves with P^T A P. The
+/// same problem where all are alone. To be called after WithoutSlivers, which needs a
+/// manifold.
+HandleProblem WithJoinedVertices(HandleProblem problem);
+
+/// Gives each vertex the values, a row per vertex, of the one that stands for it.
+/// Nothing where there are no values.
+template <typename Values>
+void FollowJoined(const std::vector<int>& joinedWith, Values& values)
+{
+  for (std::size_t v = 0; v < joinedWith.size() && values.rows() > 0; ++v)
+  {
+    if (joinedWith[v] != static_cast<int>(v))
+    {
+      values.row(static_cast<Eigen::Index>(v)) = values.row(joinedWith[v]).eval();
+    }
+  }
+}
+}
