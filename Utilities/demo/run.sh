@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the demo, or the comparison, with the plugin and the Python module of a build
-# folder: run.sh BUILD [--compare]. Utilities/demo.sh and the target `demo` call it.
+# Runs the demo, the comparison, or the figures of the Laplacian framework, with the plugin
+# and the Python module of a build folder: run.sh BUILD [--compare | --spectrum]. Utilities/demo.sh and the target `demo` call it.
 set -euo pipefail
 build=$(realpath "$1")
 cd "$(dirname "$0")/../.."
@@ -27,6 +27,10 @@ export DISPLAY
 python_module=$build/lib/python3.11/site-packages
 if [ "${2-}" = --compare ]; then
   PYTHONPATH=$python_module pvpython Utilities/demo/compare.py "$build"
+  exit
+fi
+if [ "${2-}" = --spectrum ]; then
+  PYTHONPATH=$python_module:$PYTHONPATH pvpython Utilities/demo/spectrum.py "$build"
   exit
 fi
 pvpython Utilities/demo/demo.py "$build"
