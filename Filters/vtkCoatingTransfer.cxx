@@ -204,6 +204,7 @@ void WriteArrays(vtkPolyData* source, const std::vector<cartan::SurfacePlace>& p
 vtkCoatingTransfer::vtkCoatingTransfer()
 {
   this->SetNumberOfInputPorts(3);
+  this->SetNumberOfOutputPorts(2);
 }
 
 void vtkCoatingTransfer::SetSourceData(vtkPolyData* source)
@@ -214,6 +215,11 @@ void vtkCoatingTransfer::SetSourceData(vtkPolyData* source)
 void vtkCoatingTransfer::SetSmoothSourceData(vtkPolyData* base)
 {
   this->SetInputData(2, base);
+}
+
+vtkPolyData* vtkCoatingTransfer::GetBase()
+{
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(1));
 }
 
 int vtkCoatingTransfer::FillInputPortInformation(int port, vtkInformation* info)
@@ -258,6 +264,7 @@ vtkCoatingTransfer::Sides vtkCoatingTransfer::ReadSides(cartan::FilterRun& run) 
         run.Context().Part(0.1, 0.2));
     run.Warn(matched.Warning);
     sides.Mesh = matched.Mesh;
+    run.Output(1)->ShallowCopy(smooth);
     sides.Detailed = matched.Positions[0];
     sides.SourceOrigin = matched.Origins[0];
     sides.Base =
@@ -269,7 +276,9 @@ vtkCoatingTransfer::Sides vtkCoatingTransfer::ReadSides(cartan::FilterRun& run) 
   sides.Detailed = source->Positions;
   sides.SourceOrigin = source->Origin;
   sides.Base = cartan::SmoothBase(
-    *source->Mesh, *source->Positions, this->Smoothing, run.Context().Part(0.2, 0.5));
+    *source->Mesh, *source->Positions, this->Smoothing, run.Context().Part(0.2, 0.45));
+  cartan::WriteSurface(
+    *source, sides.Base, sides.SourceData, run.Output(1), run.Context().Part(0.45, 0.5));
   return sides;
 }
 

@@ -18,6 +18,8 @@
  *   have, as doubles: interpolated at the places; those of three components turn along.
  * Points in no triangle keep their place and get zeros.
  *
+ * Output 1: the smooth base that was used, with the source's points, cells and arrays.
+ *
  * Errors, each with an empty output: POINT_ID with different numbers of points; KEYS with
  * fewer than three points of equal keys, or all on one line; missing texture coordinates; a smooth
  * source of other cells; a region array that is missing; see vtkSurfaceFilter. A warning tells when
@@ -121,7 +123,7 @@ public:
 
   ///@{
   /**
-   * Whether details are scaled as the target's neighborhoods are larger than their places.
+   * Whether details are scaled as a component of the target is larger than its places.
    * Default: on.
    */
   vtkSetMacro(ScaleDetails, bool);
@@ -163,6 +165,11 @@ public:
   vtkGetMacro(TransferArrays, bool);
   vtkBooleanMacro(TransferArrays, bool);
   ///@}
+
+  /**
+   * Output 1, valid after Update().
+   */
+  vtkPolyData* GetBase();
 
   ///@{
   /**

@@ -2,12 +2,16 @@
 # Installs what is missing, configures, builds, bends four scanned surfaces, and makes
 # the gallery and the morphs. Pictures, animations, surfaces and a ParaView state appear
 # in build/demo; what was measured is printed. With --compare, it puts all methods side
-# by side instead; with --spectrum, it draws figures of the Laplacian framework.
+# by side instead; with --spectrum, it draws figures of the Laplacian framework, and with
+# --merge surfaces that are sewn together and coated.
 set -euo pipefail
-if [ $# -gt 1 ] || { [ "${1---compare}" != --compare ] && [ "$1" != --spectrum ]; }; then
-  echo "usage: $0 [--compare | --spectrum]" >&2
-  exit 2
-fi
+case "$#${1-}" in
+  0 | 1--compare | 1--spectrum | 1--merge) ;;
+  *)
+    echo "usage: $0 [--compare | --spectrum | --merge]" >&2
+    exit 2
+    ;;
+esac
 cd "$(dirname "$0")/.."
 
 Utilities/bootstrap.sh

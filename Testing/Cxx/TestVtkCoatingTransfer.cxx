@@ -230,6 +230,13 @@ TEST_F(CoatingTransfer, MakesTheBaseBySmoothing)
   const double part = (moved.array() * relief.array()).sum() / relief.squaredNorm();
   EXPECT_NEAR(part, (1.0 - kept) * (1.0 - kept), 0.045);
   EXPECT_LT((moved - part * relief).norm(), 0.1 * relief.norm());
+  // The base that it made, as an input, gives the same.
+  vtkNew<vtkPolyData> made;
+  made->DeepCopy(this->Filter->GetBase());
+  this->Filter->SetSmoothSourceData(made);
+  EXPECT_LT((this->Result() - base.Positions - moved).norm(), 1e-12);
+  EXPECT_EQ((PointsOf(this->Filter->GetBase()) - PointsOf(made)).norm(), 0.0);
+  this->Filter->SetSmoothSourceData(nullptr);
   this->Filter->SetSmoothing(0.0);
   EXPECT_LT((this->Result() - base.Positions).norm(), 1e-12);
   ExpectMessage(

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Runs the demo, the comparison, or the figures of the Laplacian framework, with the plugin
-# and the Python module of a build folder: run.sh BUILD [--compare | --spectrum]. Utilities/demo.sh and the target `demo` call it.
+# Runs the demo, or what a word asks for instead, with the plugin and the Python module of a
+# build folder: run.sh BUILD [--compare | --spectrum | --merge]. Utilities/demo.sh and the
+# target `demo` call it.
 set -euo pipefail
 build=$(realpath "$1")
 cd "$(dirname "$0")/../.."
@@ -25,12 +26,9 @@ DISPLAY=:$(cat "$number")
 export DISPLAY
 
 python_module=$build/lib/python3.11/site-packages
-if [ "${2-}" = --compare ]; then
-  PYTHONPATH=$python_module pvpython Utilities/demo/compare.py "$build"
-  exit
-fi
-if [ "${2-}" = --spectrum ]; then
-  PYTHONPATH=$python_module:$PYTHONPATH pvpython Utilities/demo/spectrum.py "$build"
+if [ $# -gt 1 ]; then
+  # compare.py, spectrum.py or merge.py.
+  PYTHONPATH=$python_module:$PYTHONPATH pvpython "Utilities/demo/${2#--}.py" "$build"
   exit
 fi
 pvpython Utilities/demo/demo.py "$build"

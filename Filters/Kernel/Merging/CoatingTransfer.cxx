@@ -83,19 +83,22 @@ PlaceFrames FramesAtPlaces(const TriangleMesh& target, const Points& targetPoint
   const Points there = AtPlaces(basePoints, places);
   PlaceFrames frames;
   frames.Rotations = FitRotations(target, there, targetPoints, context);
+  std::vector<double> before(target.NumberOfComponents(), 0.0);
+  std::vector<double> after(target.NumberOfComponents(), 0.0);
+  for (int d = 0; d < target.NumberOfDirectedEdges(); ++d)
+  {
+    const int v = target.Origin(d);
+    const int w = target.Neighbor(d);
+    before[target.Component(v)] += (there.row(w) - there.row(v)).squaredNorm();
+    after[target.Component(v)] += (targetPoints.row(w) - targetPoints.row(v)).squaredNorm();
+  }
   frames.Scales = Eigen::VectorXd::Ones(target.NumberOfVertices());
   for (int v = 0; v < target.NumberOfVertices(); ++v)
   {
-    double before = 0.0;
-    double after = 0.0;
-    for (int d = target.RingBegin(v); d < target.RingEnd(v); ++d)
+    const int component = target.Component(v);
+    if (component >= 0 && before[component] > 0.0)
     {
-      before += (there.row(target.Neighbor(d)) - there.row(v)).squaredNorm();
-      after += (targetPoints.row(target.Neighbor(d)) - targetPoints.row(v)).squaredNorm();
-    }
-    if (before > 0.0)
-    {
-      frames.Scales[v] = std::sqrt(after / before);
+      frames.Scales[v] = std::sqrt(after[component] / before[component]);
     }
   }
   return frames;

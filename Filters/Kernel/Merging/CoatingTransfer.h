@@ -31,7 +31,9 @@ Points SmoothBase(const TriangleMesh& mesh, const Points& points, double width,
 
 /// How the neighborhood of each target vertex lies to that of its place on the source:
 /// the rotation that takes the places of its one-ring, with their normal, closest to the
-/// ring itself, and the ratio of their edges (1 where the places are all one).
+/// ring itself, and how much larger its component is than its places, by the root of the mean
+/// squares of edges (1 where the places are all one): where a base has shrunk to a tip,
+/// a ratio of single rings would throw details far away.
 struct PlaceFrames
 {
   Matrices Rotations;     ///< #V of the target x 9
