@@ -3,7 +3,7 @@
 """Runs every filter on every mesh of libcgal-demo, as it comes and after Prepare
 Surface, and prints the tables of Documentation/Robustness.md:
 
-    Utilities/robustness.sh [BUILD] [--points N] [--mesh NAME]...
+    Utilities/robustness.sh [BUILD] [--points N] [--mesh NAME]... [--task FILTER]...
 
 Each mesh has a process of its own, which a crash or a filter that takes more than a
 minute of processor time ends; it then goes on with the next filter.
@@ -22,9 +22,11 @@ SECONDS = 60
 DEFORMATIONS = ("AsRigidAsPossible", "Laplacian", "Multiresolution", "Poisson",
                 "RotationInvariant", "ShapePreserving", "Similarity")
 MORPHS = ("DiscreteForms", "Isometric", "DeformationGradient", "Linear")
+LAPLACIAN = ("DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",
+             "LeastSquaresMesh", "HighPassQuantization")
 TASKS = ([name + "Deformation" for name in DEFORMATIONS]
          + ["CurvatureError", "VolumeChange", "DiscreteForms", "FrameReconstruction"]
-         + ["SurfaceMorph " + name for name in MORPHS])
+         + ["SurfaceMorph " + name for name in MORPHS] + list(LAPLACIAN))
 
 
 def bounds_axis(surface):
@@ -58,22 +60,74 @@ def bent(surface, angle):
     return copy
 
 
+def marked(surface, handles):
+    """The surface with an array Handle."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    array = numpy_to_vtk(handles, deep=True)
+    array.SetName("Handle")
+    copy = vtkPolyData()
+    copy.ShallowCopy(surface)
+    copy.GetPointData().AddArray(array)
+    return copy
+
+
 def with_handles(surface):
     """The surface with its two ends marked: 1 and 2."""
     import numpy
-    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.util.numpy_support import vtk_to_numpy
     axis, low, high = bounds_axis(surface)
     along = vtk_to_numpy(surface.GetPoints().GetData())[:, axis]
     handles = numpy.zeros(len(along), dtype=numpy.int32)
     handles[along <= low + 0.15 * (high - low)] = 1
     handles[along >= high - 0.15 * (high - low)] = 2
-    array = numpy_to_vtk(handles, deep=True)
-    array.SetName("Handle")
-    marked = vtkPolyData()
-    marked.ShallowCopy(surface)
-    marked.GetPointData().AddArray(array)
-    return marked
+    return marked(surface, handles)
+
+
+def used_points(surface):
+    """Those of cells, each with the first point of its component."""
+    parent = list(range(surface.GetNumberOfPoints()))
+
+    def root(i):
+        while parent[i] != i:
+            parent[i] = parent[parent[i]]
+            i = parent[i]
+        return i
+    used = set()
+    for cell in range(surface.GetNumberOfCells()):
+        points = surface.GetCell(cell).GetPointIds()
+        ids = [points.GetId(i) for i in range(points.GetNumberOfIds())]
+        used.update(ids)
+        for i in ids[1:]:
+            low, high = sorted((root(ids[0]), root(i)))
+            parent[high] = low
+    return {i: root(i) for i in used}
+
+
+def with_anchors(surface):
+    """The surface with the first point of each component and every hundredth marked."""
+    import numpy
+    handles = numpy.zeros(surface.GetNumberOfPoints(), dtype=numpy.int32)
+    handles[::100] = 1
+    handles[list(used_points(surface).values())] = 1
+    return marked(surface, handles)
+
+
+def set_up(vtkcartan, name, filter, surface):
+    """As many modes and anchors as a small surface has, and as many parts need."""
+    used = used_points(surface)
+    count = min(20, len(used))
+    if name == "LaplacianSpectrum":
+        filter.SetNumberOfModes(count)
+    elif name in ("LeastSquaresMesh", "HighPassQuantization"):
+        filter.SetNumberOfAnchors(max(count, len(set(used.values()))))
+    elif name == "DifferentialReconstruction":
+        coordinates = vtkcartan.vtkDifferentialCoordinates()
+        coordinates.SetInputData(with_anchors(surface))
+        coordinates.AddObserver("ErrorEvent", lambda *_: None)
+        coordinates.Update()
+        if coordinates.GetOutput().GetNumberOfPoints() > 0:
+            filter.SetInputData(coordinates.GetOutput())
 
 
 def end_motion(vtkcartan, surface):
@@ -101,6 +155,8 @@ def make_filter(vtkcartan, task, surface):
         filter.SetInputData(0, surface)
         if name == "VolumeChange":
             filter.SetInputData(1, bent(surface, 40.0))
+        if name in LAPLACIAN:
+            set_up(vtkcartan, name, filter, surface)
         if name == "FrameReconstruction":
             forms = vtkcartan.vtkDiscreteForms()
             forms.SetInputData(surface)
@@ -178,7 +234,8 @@ def watch(path):
     while running:
         done = json.dumps([list(key) for key in results])
         child = subprocess.run([sys.executable if "pvpython" in sys.executable else "pvpython",
-                                __file__, "--work", path, "--done", done],
+                                __file__, "--work", path, "--done", done]
+                               + [word for task in TASKS for word in ("--task", task)],
                                stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
                                check=False)
         begun = None
@@ -227,9 +284,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--points", type=int, default=0, help="only meshes of at most so many")
     parser.add_argument("--mesh", action="append", help="only this mesh, such as camel")
+    parser.add_argument("--task", action="append", help="only this filter, such as LeastSquaresMesh")
     parser.add_argument("--work", help=argparse.SUPPRESS)
     parser.add_argument("--done", help=argparse.SUPPRESS)
     options = parser.parse_args()
+    TASKS[:] = options.task or TASKS
     if options.work:
         work(options.work, json.loads(options.done))
         return

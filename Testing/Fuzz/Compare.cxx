@@ -61,9 +61,14 @@ bool IsAxis(const Field& field, const Eigen::RowVectorXd& value)
   return field.Name.compare(0, 5, "Frame") == 0 && value.cwiseAbs().maxCoeff() == 1.0;
 }
 
-/// The largest difference of two rows, infinite if only one is finite.
+/// The largest difference of two rows, infinite if only one is finite. A motion spreads
+/// what is not finite over all components.
 double Distance(const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b)
 {
+  if (!a.allFinite() && !b.allFinite())
+  {
+    return 0.0;
+  }
   double largest = 0.0;
   for (Eigen::Index c = 0; c < a.size(); ++c)
   {
