@@ -241,8 +241,8 @@ TEST(MeshMerge, PutsAHeadOnADinosaur)
   ShowFigure("seam angle after fairing, mean", faired.Mean / Degrees);
   ShowFigure("seam angle after fairing, largest", faired.Maximum / Degrees);
   EXPECT_LE(change, 0.063);
-  EXPECT_LE(faired.Mean, 3.7 * Degrees);
-  EXPECT_LE(faired.Maximum, 15.0 * Degrees);
+  EXPECT_LE(faired.Mean, 2.8 * Degrees);
+  EXPECT_LE(faired.Maximum, 10.5 * Degrees);
 }
 
 TEST(MeshMerge, DoesNotDependOnTheSimilarityOfTheSource)

@@ -9,26 +9,16 @@
 
 namespace cartan
 {
-void FairRegion(const TriangleMesh& mesh, const std::vector<int>& region, Points& points,
-  const ExecutionContext& context)
+namespace
 {
-  // Equations see two rings around the region; with a third one their rows are complete.
-  // In the order of the surface, which factors like better than that of the rings.
-  std::vector<int> vertices = GrowByRings(mesh, region, 3);
-  std::sort(vertices.begin(), vertices.end());
-  if (vertices.empty())
-  {
-    return;
-  }
+/// One solve, with the weights of the surface as it is, for the region among `vertices`.
+void Solve(const TriangleMesh& mesh, const std::vector<int>& vertices,
+  const std::vector<char>& isInside, Points& points, const ExecutionContext& context)
+{
   const LaplaceOperator laplace(mesh, points, LaplacianWeights::Cotangent, context);
   const auto size = static_cast<Eigen::Index>(vertices.size());
   Eigen::VectorXd inverseMass(size);
   Field positions(size, 3);
-  std::vector<char> isInside(mesh.NumberOfVertices(), 0);
-  for (const int v : region)
-  {
-    isInside[v] = 1;
-  }
   std::vector<char> isHeld(vertices.size());
   for (Eigen::Index i = 0; i < size; ++i)
   {
@@ -39,10 +29,12 @@ void FairRegion(const TriangleMesh& mesh, const std::vector<int>& region, Points
   }
   Anchors anchors = Anchors::Hard(isHeld);
   anchors.Vertices = vertices;
+  // The negative weights of obtuse triangles, of which fans at a seam have many, would
+  // fold the surface.
+  const Eigen::VectorXd weights = laplace.GetWeights().cwiseMax(0.0);
   AnchoredSystem system;
   system.Factorize(
-    PolyharmonicMatrix(Laplacian(mesh, laplace.GetWeights(), vertices), inverseMass, 2), anchors,
-    context);
+    PolyharmonicMatrix(Laplacian(mesh, weights, vertices), inverseMass, 2), anchors, context);
   system.Interpolate(positions);
   for (Eigen::Index i = 0; i < size; ++i)
   {
@@ -50,6 +42,27 @@ void FairRegion(const TriangleMesh& mesh, const std::vector<int>& region, Points
     {
       points.row(vertices[i]) = positions.row(i);
     }
+  }
+}
+}
+
+void FairRegion(const TriangleMesh& mesh, const std::vector<int>& region, Points& points,
+  const ExecutionContext& context)
+{
+  // Equations see two rings around the region; with a third one their rows are complete.
+  // In the order of the surface, which factors like better than that of the rings.
+  std::vector<int> vertices = GrowByRings(mesh, region, 3);
+  std::sort(vertices.begin(), vertices.end());
+  std::vector<char> isInside(mesh.NumberOfVertices(), 0);
+  for (const int v : region)
+  {
+    isInside[v] = 1;
+  }
+  if (!vertices.empty())
+  {
+    // The first surface is smoother than the fold, and so are its weights.
+    Solve(mesh, vertices, isInside, points, context.Part(0.0, 0.5));
+    Solve(mesh, vertices, isInside, points, context.Part(0.5, 1.0));
   }
 }
 }
