@@ -4,7 +4,6 @@
 #include "Advice.h"
 
 #include "vtkFloatArray.h"
-#include "vtkSmoothPolyDataFilter.h"
 
 #include <complex>
 
@@ -318,9 +317,7 @@ TEST_F(CoatingTransfer, SaysWhatDoesNotBelongTogether)
   this->ExpectError({ "smooth source",
     Advice(
       "Give both the same points and cells in the same order, such as the output of Smooth.") });
-  vtkNew<vtkSmoothPolyDataFilter> smooth;
-  smooth->SetInputData(this->Source);
-  this->Filter->SetSmoothSourceConnection(smooth->GetOutputPort());
+  this->Filter->SetSmoothSourceData(MakePolyData(base));
   this->Result();
   ExpectQuiet(*this->Log);
 
