@@ -10,3 +10,4 @@ vtkcartan.accessor is imported. `python3 -m vtkcartan` works on files.
 """
 from .vtkCartan import *
 from .arrays import Deformer, Measures, deform, measure, morph
+from .landmarks import read_landmarks

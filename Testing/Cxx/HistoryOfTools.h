@@ -12,6 +12,7 @@
 #include "vtkFrameReconstruction.h"
 #include "vtkHandleMotion.h"
 #include "vtkHighPassQuantization.h"
+#include "vtkLandmarkHandles.h"
 #include "vtkLaplacianSpectrum.h"
 #include "vtkLeastSquaresMesh.h"
 #include "vtkMarkHandle.h"
@@ -27,6 +28,7 @@
 #include "vtkBox.h"
 #include "vtkClipPolyData.h"
 #include "vtkIdTypeArray.h"
+#include "vtkMaskPoints.h"
 #include "vtkPlane.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
@@ -349,6 +351,31 @@ inline Subject Coating()
       Switch<Filter>(&Filter::SetTransferArrays) });
 }
 
+/// Some points of a surface as landmarks. They have no names to match.
+inline Choice LandmarksOn(int port)
+{
+  return { 2 * NumberOfSurfaces,
+    [port](vtkAlgorithm* filter, int value, Surfaces& surfaces)
+    {
+      const auto some = Upstream<vtkMaskPoints>();
+      some->SetInputData(surfaces[value % NumberOfSurfaces]);
+      some->SetOnRatio(value < NumberOfSurfaces ? 9 : 13);
+      some->SetMaximumNumberOfPoints(5);
+      filter->SetInputConnection(port, some->GetOutputPort());
+    } };
+}
+
+inline Subject Landmarks()
+{
+  using Filter = vtkLandmarkHandles;
+  return Make<Filter>("LandmarkHandles",
+    { InputChoice(), LandmarksOn(1), LandmarksOn(2),
+      Number<Filter>(&Filter::SetTolerance, { 0.0, 1.0, 2.0 }),
+      Number<Filter>(&Filter::SetAccuracy, { 0.0, 0.01 }),
+      Name<Filter>(&Filter::SetAccuracyArrayName, { "", "Weight" }),
+      Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "Other" }) });
+}
+
 inline std::vector<Subject> ToolSubjects()
 {
   return { Comparison<vtkCurvatureError>(
@@ -358,6 +385,6 @@ inline std::vector<Subject> ToolSubjects()
     Make<vtkDiscreteForms>("DiscreteForms", { InputChoice() }), Reconstruction(), Mark(), Morph(),
     Prepare(), Restore(), Coordinates(), ReconstructionFromCoordinates(), Spectrum(),
     Approximation(), Quantization(), Make<vtkBoundaryLoops>("BoundaryLoops", { Half(0) }), Merge(),
-    Watermark(), Coating() };
+    Watermark(), Coating(), Landmarks() };
 }
 }

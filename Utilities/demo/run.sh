@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the demo, or what a word asks for instead, with the plugin and the Python module of a
-# build folder: run.sh BUILD [--compare | --spectrum | --merge]. Utilities/demo.sh and the
-# target `demo` call it.
+# build folder: run.sh BUILD [--compare | --spectrum | --merge | --landmarks].
+# Utilities/demo.sh and the target `demo` call it.
 set -euo pipefail
 build=$(realpath "$1")
 cd "$(dirname "$0")/../.."

@@ -1,0 +1,5 @@
+import os
+
+from vtkmodules.vtkCommonDataModel import vtkTable
+
+def read_landmarks(file_name: str | os.PathLike[str], system: str = "LPS") -> vtkTable: ...
