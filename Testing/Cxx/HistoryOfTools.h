@@ -4,6 +4,7 @@
 #include "History.h"
 
 #include "vtkBoundaryLoops.h"
+#include "vtkCarryAlong.h"
 #include "vtkCoatingTransfer.h"
 #include "vtkCurvatureError.h"
 #include "vtkDifferentialCoordinates.h"
@@ -385,6 +386,9 @@ inline std::vector<Subject> ToolSubjects()
     Make<vtkDiscreteForms>("DiscreteForms", { InputChoice() }), Reconstruction(), Mark(), Morph(),
     Prepare(), Restore(), Coordinates(), ReconstructionFromCoordinates(), Spectrum(),
     Approximation(), Quantization(), Make<vtkBoundaryLoops>("BoundaryLoops", { Half(0) }), Merge(),
-    Watermark(), Coating(), Landmarks() };
+    Watermark(), Coating(), Landmarks(),
+    Make<vtkCarryAlong>("CarryAlong",
+      { InputChoice(0), InputChoice(1), InputChoice(2),
+        Switch<vtkCarryAlong>(&vtkCarryAlong::SetTurnVectors) }) };
 }
 }

@@ -12,7 +12,7 @@ FILTERS = {
     "CurvatureError", "VolumeChange", "SurfaceMorph", "PrepareSurface", "RestoreSurface",
     "DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",
     "LeastSquaresMesh", "HighPassQuantization", "SpectralWatermark",
-    "BoundaryLoops", "MeshMerge", "CoatingTransfer", "LandmarkHandles",
+    "BoundaryLoops", "MeshMerge", "CoatingTransfer", "LandmarkHandles", "CarryAlong",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 
