@@ -4,6 +4,7 @@
 #include "Bridge/FilterRun.h"
 
 #include "Bridge/PointArrays.h"
+#include "Bridge/StretchArrays.h"
 #include "Bridge/SurfacePair.h"
 #include "Kernel/Measure/Areas.h"
 #include "Kernel/Measure/ComponentVolumes.h"
@@ -327,15 +328,52 @@ void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun
       output, "LocalVolumeRatio", cartan::Ratios(volumes->GetReference(), localVolume));
   }
   AddArrays(output, pair, changes);
+  this->AddStretches(pair, run);
   this->Results = FillTable(changes, run.OutputTable(1));
   cartan::AddFieldValue(output, "RelativeVolumeChange", this->GetRelativeVolumeChange());
   cartan::AddFieldValue(output, "ShapeDistance", this->GetShapeDistance());
+}
+
+void vtkVolumeChange::AddStretches(const cartan::SurfacePair& pair, cartan::FilterRun& run) const
+{
+  if (!this->ComputeStretches && this->StrainMeasure == NO_STRAIN)
+  {
+    return;
+  }
+  vtkPolyData* output = run.Output();
+  const cartan::SurfaceStretches stretches = cartan::MeasureStretches(*pair.Mesh, *pair.Cells,
+    output->GetNumberOfCells(), *pair.Reference, *pair.Current, run.Context());
+  if (this->ComputeStretches)
+  {
+    cartan::AddStretchArrays(stretches, output);
+  }
+  using cartan::StrainMeasure;
+  switch (this->StrainMeasure)
+  {
+    case BIOT:
+      cartan::AddStrainArrays(stretches, StrainMeasure::Biot, "BiotStrain", output);
+      break;
+    case GREEN_LAGRANGE:
+      cartan::AddStrainArrays(
+        stretches, StrainMeasure::GreenLagrange, "GreenLagrangeStrain", output);
+      break;
+    case HENCKY:
+      cartan::AddStrainArrays(stretches, StrainMeasure::Hencky, "HenckyStrain", output);
+      break;
+    case EULER_ALMANSI:
+      cartan::AddStrainArrays(stretches, StrainMeasure::EulerAlmansi, "EulerAlmansiStrain", output);
+      break;
+    default:
+      break;
+  }
 }
 
 void vtkVolumeChange::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ComputeLocalVolume: " << this->ComputeLocalVolume << "\n";
+  os << indent << "ComputeStretches: " << this->ComputeStretches << "\n";
+  os << indent << "StrainMeasure: " << this->StrainMeasure << "\n";
   for (const auto& [name, value] : this->Results)
   {
     os << indent << name << ": " << value << "\n";

@@ -25,6 +25,13 @@
  * - `LocalVolumeRatio` (points): local volume divided by that of the reference.
  * - `ShapeDistanceDensity` (points): see `ShapeDistance`, in 1 / squared length
  *   units.
+ * - `Stretch1` >= `Stretch2` (points and cells): the principal stretches, new length / old
+ *   length in the directions of most and least stretch; and
+ *   `StretchDirection1`, `StretchDirection2`: where these directions are on the surface, unit
+ *   vectors, zero where both stretches are the same. Of a cell that was triangulated: those of its
+ *   largest triangle.
+ * - with StrainMeasure two arrays of its name (points and cells), such as
+ *   `GreenLagrangeStrain1` >= `GreenLagrangeStrain2`: the principal strains.
  * `AreaRatio` is the active point scalars, by which viewers color the surface.
  * Field data, one double each: `RelativeVolumeChange`, `ShapeDistance`.
  *
@@ -92,6 +99,39 @@ public:
   vtkBooleanMacro(ComputeLocalVolume, bool);
   ///@}
 
+  ///@{
+  /**
+   * Whether to compute the principal stretches and their directions. On by default.
+   */
+  vtkSetMacro(ComputeStretches, bool);
+  vtkGetMacro(ComputeStretches, bool);
+  vtkBooleanMacro(ComputeStretches, bool);
+  ///@}
+
+  enum StrainMeasureType
+  {
+    NO_STRAIN = 0,
+    BIOT = 1,
+    GREEN_LAGRANGE = 2,
+    HENCKY = 3,
+    EULER_ALMANSI = 4
+  };
+
+  ///@{
+  /**
+   * Which strains of a stretch s are computed too. BIOT (engineering strain): s - 1.
+   * GREEN_LAGRANGE: (s^2 - 1) / 2. HENCKY (true, logarithmic strain): ln s. EULER_ALMANSI:
+   * (1 - s^-2) / 2. The last two are minus infinity where s is 0. Default: NO_STRAIN.
+   */
+  vtkSetClampMacro(StrainMeasure, int, NO_STRAIN, EULER_ALMANSI);
+  vtkGetMacro(StrainMeasure, int);
+  void SetStrainMeasureToNoStrain() { this->SetStrainMeasure(NO_STRAIN); }
+  void SetStrainMeasureToBiot() { this->SetStrainMeasure(BIOT); }
+  void SetStrainMeasureToGreenLagrange() { this->SetStrainMeasure(GREEN_LAGRANGE); }
+  void SetStrainMeasureToHencky() { this->SetStrainMeasure(HENCKY); }
+  void SetStrainMeasureToEulerAlmansi() { this->SetStrainMeasure(EULER_ALMANSI); }
+  ///@}
+
   /**
    * Output 1, valid after Update().
    */
@@ -118,8 +158,11 @@ protected:
 
 private:
   double GetResult(const std::string& name) const;
+  void AddStretches(const cartan::SurfacePair& pair, cartan::FilterRun& run) const;
 
   bool ComputeLocalVolume = true;
+  bool ComputeStretches = true;
+  int StrainMeasure = NO_STRAIN;
   std::map<std::string, double> Results;
 };
 

@@ -381,8 +381,11 @@ inline std::vector<Subject> ToolSubjects()
 {
   return { Comparison<vtkCurvatureError>(
              "CurvatureError", Switch<vtkCurvatureError>(&vtkCurvatureError::SetComputeDirections)),
-    Comparison<vtkVolumeChange>(
-      "VolumeChange", Switch<vtkVolumeChange>(&vtkVolumeChange::SetComputeLocalVolume)),
+    Make<vtkVolumeChange>("VolumeChange",
+      { InputChoice(0), InputChoice(1),
+        Switch<vtkVolumeChange>(&vtkVolumeChange::SetComputeLocalVolume),
+        Switch<vtkVolumeChange>(&vtkVolumeChange::SetComputeStretches),
+        Enumeration<vtkVolumeChange>(5, &vtkVolumeChange::SetStrainMeasure) }),
     Make<vtkDiscreteForms>("DiscreteForms", { InputChoice() }), Reconstruction(), Mark(), Morph(),
     Prepare(), Restore(), Coordinates(), ReconstructionFromCoordinates(), Spectrum(),
     Approximation(), Quantization(), Make<vtkBoundaryLoops>("BoundaryLoops", { Half(0) }), Merge(),

@@ -18,7 +18,8 @@ namespace
 bool MayBeNaN(const std::string& name)
 {
   static const std::set<std::string> names = { "AreaRatio", "EdgeLengthRatio", "LocalVolume",
-    "LocalVolumeRatio", "RelativeVolumeChange", "Angle", "Reference", "Current", "RelativeChange" };
+    "LocalVolumeRatio", "RelativeVolumeChange", "Angle", "Reference", "Current", "RelativeChange",
+    "Stretch1", "Stretch2" };
   return names.count(name) > 0;
 }
 
@@ -27,7 +28,7 @@ bool IsComparable(const Field& field, const Relation& relation)
 {
   // Of bodies that enclose next to nothing, rounding decides which side is outside.
   if (field.Name.find("CurvatureDirection") != std::string::npos ||
-    field.Name == "ReversedComponents")
+    field.Name.find("StretchDirection") != std::string::npos || field.Name == "ReversedComponents")
   {
     return false;
   }

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Bridge/SurfacePair.h"
+#include "Kernel/Measure/Stretches.h"
+
+#include "vtkType.h"
+
+class vtkPolyData;
+
+namespace cartan
+{
+/// Stretches of the points and cells of a surface.
+struct SurfaceStretches
+{
+  Stretches OfPoints; ///< #V
+  Stretches OfCells;  ///< a row per cell, 1 for lines and vertices
+};
+
+/// From one to the other of two surfaces of one connectivity (#V x 3 each). A cell of several
+/// triangles has the stretches of that which is largest in the reference.
+SurfaceStretches MeasureStretches(const TriangleMesh& mesh, const Connectivity& cells,
+  vtkIdType numberOfCells, const Points& reference, const Points& current,
+  const ExecutionContext& context);
+
+/// Adds Stretch1, Stretch2, StretchDirection1 and StretchDirection2 to points and cells.
+void AddStretchArrays(const SurfaceStretches& stretches, vtkPolyData* output);
+
+/// Adds `name`1 and `name`2 to points and cells.
+void AddStrainArrays(const SurfaceStretches& stretches, StrainMeasure measure,
+  const std::string& name, vtkPolyData* output);
+}
