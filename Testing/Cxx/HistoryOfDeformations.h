@@ -11,6 +11,7 @@
 #include "vtkRotationInvariantDeformation.h"
 #include "vtkShapePreservingDeformation.h"
 #include "vtkSimilarityDeformation.h"
+#include "vtkVolumetricDeformation.h"
 
 #include "Kernel/Algebra/CholeskyFactor.h"
 
@@ -118,6 +119,15 @@ inline Subject Similarity()
         Switch<Filter>(&Filter::SetGenerateScaleFactor) }));
 }
 
+inline Subject Volumetric()
+{
+  using Filter = vtkVolumetricDeformation;
+  return Make<Filter>("Volumetric",
+    DeformationChoices<Filter>({ Number<Filter>(&Filter::SetLatticeSpacing, { 0.0, 0.6, 0.3 }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetOuterLayer(value == 0); }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetVolumeRounds(3 - value); }) }));
+}
+
 inline std::vector<Subject> DeformationSubjects()
 {
   using RotationInvariant = vtkRotationInvariantDeformation;
@@ -144,6 +154,7 @@ inline std::vector<Subject> DeformationSubjects()
       DeformationChoices<Multiresolution>({ Of<Multiresolution>(
         3, [](Multiresolution* f, int value) { f->SetSmoothness(1 + value); }) })),
     AsRigidAsPossible(),
+    Volumetric(),
   };
 }
 }

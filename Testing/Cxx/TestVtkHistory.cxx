@@ -6,6 +6,7 @@
 #include "HistoryOfTools.h"
 
 #include "vtkTable.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <random>
 #include <set>
@@ -36,6 +37,19 @@ void ExpectSameTable(vtkTable* actual, vtkTable* expected)
   }
 }
 
+void ExpectSameGrid(vtkUnstructuredGrid* actual, vtkUnstructuredGrid* expected)
+{
+  ASSERT_EQ(actual->GetNumberOfPoints(), expected->GetNumberOfPoints());
+  ASSERT_EQ(actual->GetNumberOfCells(), expected->GetNumberOfCells());
+  if (expected->GetNumberOfPoints() > 0)
+  {
+    EXPECT_TRUE(
+      vtktest::SameArray(actual->GetPoints()->GetData(), expected->GetPoints()->GetData()));
+  }
+  vtktest::ExpectArrays(actual->GetPointData(), expected->GetPointData());
+  vtktest::ExpectArrays(actual->GetCellData(), expected->GetCellData());
+}
+
 void ExpectSameOutputs(vtkAlgorithm* actual, vtkAlgorithm* expected)
 {
   for (int port = 0; port < expected->GetNumberOfOutputPorts(); ++port)
@@ -45,6 +59,10 @@ void ExpectSameOutputs(vtkAlgorithm* actual, vtkAlgorithm* expected)
     if (auto* table = vtkTable::SafeDownCast(b))
     {
       ExpectSameTable(vtkTable::SafeDownCast(a), table);
+    }
+    else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(b))
+    {
+      ExpectSameGrid(vtkUnstructuredGrid::SafeDownCast(a), grid);
     }
     else
     {

@@ -13,6 +13,7 @@ FILTERS = {
     "DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",
     "LeastSquaresMesh", "HighPassQuantization", "SpectralWatermark",
     "BoundaryLoops", "MeshMerge", "CoatingTransfer", "LandmarkHandles", "CarryAlong",
+    "VolumetricDeformation",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 

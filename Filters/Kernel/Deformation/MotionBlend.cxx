@@ -2,6 +2,7 @@
 #include "Deformation/MotionBlend.h"
 
 #include "Algebra/Rotation.h"
+#include "Base/Error.h"
 
 namespace cartan
 {
@@ -41,5 +42,16 @@ Eigen::Matrix3d MotionBlend::FromCoordinates(const Blend& blend)
   }
   return rotation *
     (Eigen::Matrix3d::Identity() + Eigen::Map<const Eigen::Matrix3d>(blend.data() + 3));
+}
+
+void RequireMotions(const HandleTargets& targets, const std::string& method)
+{
+  if (targets.IsPerVertex() || targets.RotationVectors.rows())
+  {
+    throw Error(ErrorCode::BadInput,
+      method +
+        " interpolates one motion per handle, not arrays of positions, rotations or "
+        "transforms: give each handle a motion, or choose another method.");
+  }
 }
 }

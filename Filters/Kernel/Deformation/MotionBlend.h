@@ -3,6 +3,8 @@
 
 #include "Deformation/HandleProblem.h"
 
+#include <string>
+
 namespace cartan
 {
 /// Weighted means of handles' linear maps and the identity. Each map A is split
@@ -30,4 +32,7 @@ private:
   std::vector<Eigen::Matrix3d> Stretches; ///< S_k - I
   bool HasStretches = false;
 };
+
+/// Throws Error(BadInput) for targets that are not one motion per handle.
+void RequireMotions(const HandleTargets& targets, const std::string& method);
 }

@@ -81,12 +81,7 @@ PoissonDeformer::PoissonDeformer(HandleProblem problem, Propagation propagation,
 
 void PoissonDeformer::RequireMotions(const HandleTargets& targets)
 {
-  if (targets.IsPerVertex() || targets.RotationVectors.rows())
-  {
-    throw Error(ErrorCode::BadInput,
-      "Poisson editing interpolates one motion per handle, not arrays of positions, rotations or "
-      "transforms: give each handle a motion, or choose another method.");
-  }
+  cartan::RequireMotions(targets, "Poisson editing");
 }
 
 void PoissonDeformer::ComputeTransforms(

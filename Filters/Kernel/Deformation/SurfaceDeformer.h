@@ -56,6 +56,9 @@ protected:
   /// motion; not where something else moves them too.
   virtual bool FollowsRigidHandles() const { return true; }
 
+  /// What the targets of DeformRelative are relative to: for results beside the surface.
+  const RigidMotion& GetCommonMotion() const { return this->Common->GetMotion(); }
+
   /// The memory of what is kept here.
   std::size_t GetBaseBytes() const
   {
