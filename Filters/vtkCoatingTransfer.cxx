@@ -151,7 +151,7 @@ cartan::FoundPlaces PlacesById(
   found.Distances = Eigen::VectorXd::Zero(target.NumberOfVertices());
   for (int v = 0; v < target.NumberOfVertices(); ++v)
   {
-    found.Places.push_back({ { v, v, v }, Eigen::Vector3d::UnitX() });
+    found.Places.push_back(cartan::SurfacePlace::AtVertex(v));
   }
   return found;
 }

@@ -8,6 +8,7 @@
 #include "Kernel/Base/Constants.h"
 #include "Kernel/Merging/LoopPairing.h"
 #include "Kernel/Merging/SeamFairing.h"
+#include "Kernel/Merging/Transition.h"
 #include "Kernel/Mesh/GeodesicDistance.h"
 #include "Kernel/Mesh/GrowByRings.h"
 
@@ -38,6 +39,18 @@ struct vtkMeshMerge::Sides
   cartan::MergeBoundary Target;
   cartan::MergeBoundary Source;
   Eigen::Vector3d SourceOffset; ///< from the source's coordinates to the world's
+};
+
+/// The surface that they make.
+struct vtkMeshMerge::Sewn
+{
+  cartan::FittedSource Fit;
+  cartan::JoinedSurface Joined;
+  cartan::TriangleMesh Mesh;
+  cartan::Points Positions; ///< from the target's origin
+  cartan::Fading Fading;    ///< empty without a transition
+  /// The target's points, with those where a transition cuts it.
+  std::shared_ptr<const cartan::Points> TargetPoints;
 };
 
 namespace
@@ -153,6 +166,7 @@ void vtkMeshMerge::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Configuration: " << this->Configuration << "\n";
   os << indent << "BendWidth: " << this->BendWidth << "\n";
+  os << indent << "TransitionWidth: " << this->TransitionWidth << "\n";
   os << indent << "SeamFairing: " << this->SeamFairing << "\n";
   os << indent << "BoundaryKeyArrayName: " << this->BoundaryKeyArrayName << "\n";
   os << indent << "HandleArrayName: " << this->HandleArrayName << "\n";
@@ -230,14 +244,10 @@ std::vector<char> vtkMeshMerge::HeldPoints(
   return held;
 }
 
-void vtkMeshMerge::Execute(cartan::FilterRun& run)
+vtkMeshMerge::Sewn vtkMeshMerge::Sew(
+  const Sides& sides, const cartan::PairedLoops& paired, cartan::FilterRun& run)
 {
   const cartan::ExecutionContext& context = run.Context();
-  const Sides sides = this->ReadSides(run);
-  const cartan::PairedLoops paired = cartan::PairLoops(sides.Target, sides.Source,
-    this->Configuration == DEPENDENT ? cartan::LoopAlignment::AsTheyLie
-                                     : cartan::LoopAlignment::BySimilarity);
-  run.Warn(paired.Warning);
   std::vector<std::vector<int>> loops;
   cartan::ContentKey key = sides.SourceSurface->Key;
   key.Add(static_cast<std::uint64_t>(this->Configuration));
@@ -254,36 +264,71 @@ void vtkMeshMerge::Execute(cartan::FilterRun& run)
     [&]
     {
       return std::make_unique<cartan::MeshMerge>(sides.Source.Surface, loops, held,
-        cartan::SolverBackend::Automatic, context.Part(0.25, 0.8));
+        cartan::SolverBackend::Automatic, context.Part(0.25, 0.75));
     });
   this->NumberOfFactorizations = merge->GetNumberOfFactorizations();
 
-  const cartan::FittedSource fitted =
-    merge->Fit(sides.Target.Surface, paired.Pairs, paired.Keys, context.Part(0.8, 0.9));
-  run.Warn(fitted.Warning);
-  const cartan::JoinedSurface joined =
-    cartan::JoinSurfaces(*sides.TargetSurface->Mesh, *sides.SourceSurface->Mesh, fitted.Loops);
-  cartan::Points positions =
-    cartan::JoinedPositions(joined, *sides.TargetSurface->Positions, fitted.Positions);
-  const cartan::TriangleMesh mesh(joined.NumberOfVertices(), joined.Faces);
-  if (this->SeamFairing > 0)
+  Sewn sewn;
+  const cartan::TriangleMesh& source = *sides.SourceSurface->Mesh;
+  const auto join = [&](const cartan::MergeInput& target,
+                      const std::vector<cartan::LoopPair>& pairs,
+                      const std::vector<std::vector<cartan::LoopKey>>& keys)
   {
-    cartan::FairRegion(mesh,
-      cartan::GrowByRings(mesh, cartan::SeamVertices(joined), this->SeamFairing), positions,
-      context.Part(0.9, 0.95));
+    sewn.Fit = merge->Fit(target, pairs, keys, context.Part(0.8, 0.85));
+    run.Warn(sewn.Fit.Warning);
+    sewn.Joined = cartan::JoinSurfaces(*target.Mesh, source, sewn.Fit.Loops);
+    sewn.Positions = cartan::JoinedPositions(sewn.Joined, *target.Positions, sewn.Fit.Positions);
+    sewn.Mesh = cartan::TriangleMesh(sewn.Joined.NumberOfVertices(), sewn.Joined.Faces);
+    sewn.TargetPoints = target.Positions;
+  };
+  if (!(this->TransitionWidth > 0.0))
+  {
+    join(sides.Target.Surface, paired.Pairs, paired.Keys);
+    return sewn;
   }
-  const cartan::SeamAngles angles = cartan::MeasureSeam(joined, mesh, positions);
+  const cartan::Transition transition(
+    sides.Target.Surface, paired.Pairs, this->TransitionWidth, context.Part(0.75, 0.8));
+  const cartan::CutSurface& cut = transition.GetCut();
+  join({ cut.Mesh, cut.Positions }, transition.GetPairs(), transition.MoveKeys(paired.Keys));
+  sewn.Fading = transition.Fade(
+    source, sewn.Fit, held, sewn.Joined, sewn.Mesh, sewn.Positions, context.Part(0.85, 0.9));
+  cartan::NameWholeFaces(cut, sewn.Joined);
+  return sewn;
+}
+
+void vtkMeshMerge::WriteOutputs(
+  const Sides& sides, const cartan::PairedLoops& paired, const Sewn& sewn, cartan::FilterRun& run)
+{
+  const cartan::SeamAngles angles = cartan::MeasureSeam(sewn.Joined, sewn.Mesh, sewn.Positions);
   cartan::WriteMergedSurface({ sides.TargetSurface.get(), sides.TargetData },
-    { sides.SourceSurface.get(), sides.SourceData }, joined, mesh, positions, run.Output());
+    { sides.SourceSurface.get(), sides.SourceData }, sewn.Joined, sewn.Mesh, sewn.Positions,
+    sewn.Fading, run.Output());
   this->NumberOfPairs = static_cast<int>(paired.Pairs.size());
   this->SeamAngleMean =
     cartan::AddFieldValue(run.Output(), "SeamAngleMean", angles.Mean * 180.0 / cartan::Pi);
   this->SeamAngleMaximum =
     cartan::AddFieldValue(run.Output(), "SeamAngleMaximum", angles.Maximum * 180.0 / cartan::Pi);
   const cartan::Points target =
-    sides.TargetSurface->Positions->rowwise() + sides.TargetSurface->Origin.transpose();
+    sewn.TargetPoints->rowwise() + sides.TargetSurface->Origin.transpose();
   const cartan::Points source =
     sides.Source.Surface.Positions->rowwise() + sides.SourceOffset.transpose();
-  WriteCorrespondences(paired, fitted, target, source, run.Output(1));
-  context.Report(1.0);
+  WriteCorrespondences(paired, sewn.Fit, target, source, run.Output(1));
+}
+
+void vtkMeshMerge::Execute(cartan::FilterRun& run)
+{
+  const Sides sides = this->ReadSides(run);
+  const cartan::PairedLoops paired = cartan::PairLoops(sides.Target, sides.Source,
+    this->Configuration == DEPENDENT ? cartan::LoopAlignment::AsTheyLie
+                                     : cartan::LoopAlignment::BySimilarity);
+  run.Warn(paired.Warning);
+  Sewn sewn = this->Sew(sides, paired, run);
+  if (this->SeamFairing > 0)
+  {
+    cartan::FairRegion(sewn.Mesh,
+      cartan::GrowByRings(sewn.Mesh, cartan::SeamVertices(sewn.Joined), this->SeamFairing),
+      sewn.Positions, run.Context().Part(0.9, 0.95));
+  }
+  this->WriteOutputs(sides, paired, sewn, run);
+  run.Context().Report(1.0);
 }

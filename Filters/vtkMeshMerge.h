@@ -15,11 +15,13 @@
  *
  * Output 0: one oriented manifold of triangles, in the target's precision, with the point
  * and cell arrays that both inputs have with equal names, types and components (the
- * target's where both have the point), and
+ * target's where both have the point, interpolated where a transition cuts its edges), and
  * - `MergeOrigin` (int, points and cells): 0 target, 1 source, 2 a point on the seam,
  * - `OriginalPointIds`, `OriginalCellIds` (vtkIdType): in the target, and where that has
  *   none in the source,
  * - `Normals`, anew, when an input has normals,
+ * - `SourcePart` (double, points) with a TransitionWidth: 0 where details are the target's,
+ *   1 where they are the source's; whole numbers and texts do not fade, they change at 1/2,
  * - field data `SeamAngleMean`, `SeamAngleMaximum` (double, degrees): between the normals
  *   of triangles on both sides of the seam.
  * Points in no triangle, vertices and lines are left out.
@@ -34,8 +36,8 @@
  * Errors, each with empty outputs: an input without boundary; keys that are not on a
  * boundary, on one input only, twice on one, join a loop to several or cross; different numbers
  * of loops without keys; a part of the source that is neither sewn on nor held; boundaries
- * without a direction; a seam that would be no manifold; DEPENDENT with nothing held; see
- * vtkSurfaceFilter.
+ * without a direction; a transition wider than the surface, or with held points; a seam that would
+ * be no manifold; DEPENDENT with nothing held; see vtkSurfaceFilter.
  *
  * Reference: Fu, Au, Tai, Effective Derivation of Similarity Transformations for Implicit
  * Laplacian Mesh Editing, Computer Graphics Forum 26(1), 2007, section 5.
@@ -48,6 +50,11 @@
 #include "vtkSurfaceFilter.h"
 
 #include <string> // For array names
+
+namespace cartan
+{
+struct PairedLoops;
+}
 
 class VTKCARTAN_EXPORT vtkMeshMerge : public vtkSurfaceFilter
 {
@@ -92,6 +99,17 @@ public:
    */
   vtkSetClampMacro(BendWidth, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(BendWidth, double);
+  ///@}
+
+  ///@{
+  /**
+   * How wide the bands along the loops are, over the surface, that overlap: the target's
+   * is cut off, the source's takes its place, and details and point arrays fade across it
+   * from the target's into the source's. In length units of the target, and of the source
+   * as it is in the result; >= 0. 0: none, the surfaces touch at their loops. Default: 0.
+   */
+  vtkSetClampMacro(TransitionWidth, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TransitionWidth, double);
   ///@}
 
   ///@{
@@ -155,14 +173,19 @@ protected:
 
 private:
   struct Sides;
+  struct Sewn;
   Sides ReadSides(cartan::FilterRun& run) const;
   std::vector<char> HeldPoints(
     const Sides& sides, const std::vector<std::vector<int>>& loops, cartan::FilterRun& run) const;
+  Sewn Sew(const Sides& sides, const cartan::PairedLoops& paired, cartan::FilterRun& run);
+  void WriteOutputs(const Sides& sides, const cartan::PairedLoops& paired, const Sewn& sewn,
+    cartan::FilterRun& run);
 
   std::string BoundaryKeyArrayName = "BoundaryKey";
   std::string HandleArrayName = "Handle";
   int Configuration = INDEPENDENT;
   double BendWidth = 0.0;
+  double TransitionWidth = 0.0;
   int SeamFairing = 0;
   int NumberOfPairs = 0;
   int NumberOfFactorizations = 0;

@@ -333,6 +333,7 @@ inline Subject Merge()
   return Make<Filter>("MeshMerge",
     { Half(0), Half(1), Enumeration<Filter>(2, &Filter::SetConfiguration),
       Number<Filter>(&Filter::SetBendWidth, { 0.0, 0.5 }),
+      Number<Filter>(&Filter::SetTransitionWidth, { 0.0, 0.3, 0.1 }),
       Of<Filter>(3, [](Filter* f, int value) { f->SetSeamFairing(value); }),
       Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "None" }),
       Name<Filter>(&Filter::SetBoundaryKeyArrayName, { "BoundaryKey", "Handle" }) });

@@ -172,31 +172,44 @@ struct Merged
   }
 };
 
-/// Keys as pairs of points, source first; loops without are paired by where they lie.
-inline Merged Merge(const Shape& target, const Shape& source,
-  const std::vector<std::pair<int, int>>& keys, const std::vector<char>& isHeld = {})
+/// Pairs of points with equal keys, source first.
+using Keys = std::vector<std::pair<int, int>>;
+
+/// Both surfaces with their keys.
+struct Sides
 {
-  cartan::MergeBoundary targetSide{ MakeInput(target), "target",
-    std::vector<int>(target.NumberOfVertices(), 0) };
-  cartan::MergeBoundary sourceSide{ MakeInput(source), "source",
-    std::vector<int>(source.NumberOfVertices(), 0) };
-  for (std::size_t k = 0; k < keys.size(); ++k)
+  Sides(const Shape& target, const Shape& source, const Keys& keys)
+    : Target{ MakeInput(target), "target", std::vector<int>(target.NumberOfVertices(), 0) }
+    , Source{ MakeInput(source), "source", std::vector<int>(source.NumberOfVertices(), 0) }
   {
-    sourceSide.Keys[keys[k].first] = static_cast<int>(k) + 1;
-    targetSide.Keys[keys[k].second] = static_cast<int>(k) + 1;
+    for (std::size_t k = 0; k < keys.size(); ++k)
+    {
+      this->Source.Keys[keys[k].first] = static_cast<int>(k) + 1;
+      this->Target.Keys[keys[k].second] = static_cast<int>(k) + 1;
+    }
   }
-  const cartan::PairedLoops paired = cartan::PairLoops(targetSide, sourceSide,
+
+  cartan::MergeBoundary Target;
+  cartan::MergeBoundary Source;
+};
+
+/// Loops without keys are paired by where they lie.
+inline Merged Merge(
+  const Shape& target, const Shape& source, const Keys& keys, const std::vector<char>& isHeld = {})
+{
+  const Sides sides(target, source, keys);
+  const cartan::PairedLoops paired = cartan::PairLoops(sides.Target, sides.Source,
     isHeld.empty() ? cartan::LoopAlignment::BySimilarity : cartan::LoopAlignment::AsTheyLie);
   std::vector<std::vector<int>> loops;
   for (const cartan::LoopPair& pair : paired.Pairs)
   {
     loops.push_back(pair.Source);
   }
-  const cartan::MeshMerge merge(sourceSide.Surface, loops, isHeld);
+  const cartan::MeshMerge merge(sides.Source.Surface, loops, isHeld);
   Merged merged;
-  merged.Fit = merge.Fit(targetSide.Surface, paired.Pairs, paired.Keys);
+  merged.Fit = merge.Fit(sides.Target.Surface, paired.Pairs, paired.Keys);
   merged.Joined =
-    cartan::JoinSurfaces(*targetSide.Surface.Mesh, *sourceSide.Surface.Mesh, merged.Fit.Loops);
+    cartan::JoinSurfaces(*sides.Target.Surface.Mesh, *sides.Source.Surface.Mesh, merged.Fit.Loops);
   merged.Positions = cartan::JoinedPositions(merged.Joined, target.Positions, merged.Fit.Positions);
   merged.Mesh = cartan::TriangleMesh(merged.Joined.NumberOfVertices(), merged.Joined.Faces);
   return merged;

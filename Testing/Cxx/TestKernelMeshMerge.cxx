@@ -15,7 +15,6 @@ using namespace shapes;
 
 constexpr double Degrees = cartan::Pi / 180.0;
 
-using Keys = std::vector<std::pair<int, int>>;
 const Keys TubeKeys = { { 0, 25 }, { 410, 233 }, { 820, 415 }, { 1230, 623 } };
 
 /// A tube around the arc of radius 2 from `from` to `to` in radians, with waves along it.

@@ -2,23 +2,13 @@
 #pragma once
 
 #include "Base/ExecutionContext.h"
+#include "Merging/SurfacePlace.h"
 #include "Mesh/TriangleMesh.h"
 
-#include <array>
 #include <vector>
 
 namespace cartan
 {
-/// A place on a triangle surface.
-struct SurfacePlace
-{
-  std::array<int, 3> Corners = { 0, 0, 0 };           ///< vertices
-  Eigen::Vector3d Weights = Eigen::Vector3d::UnitX(); ///< barycentric coordinates
-};
-
-/// Values (a row per vertex) at places: #places x columns.
-Field AtPlaces(const Field& values, const std::vector<SurfacePlace>& places);
-
 /// The surface without its details, those whose wave length is below `width` mean edge
 /// lengths of their component: waves of this length keep three quarters of their height,
 /// half as long ones a tenth, and twice as long ones all but .4 % (of second

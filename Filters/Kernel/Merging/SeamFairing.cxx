@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Merging/SeamFairing.h"
 
-#include "Algebra/AnchoredSystem.h"
 #include "Differential/LaplaceOperator.h"
 #include "Mesh/GrowByRings.h"
 
@@ -9,60 +8,72 @@
 
 namespace cartan
 {
-namespace
-{
-/// One solve, with the weights of the surface as it is, for the region among `vertices`.
-void Solve(const TriangleMesh& mesh, const std::vector<int>& vertices,
-  const std::vector<char>& isInside, Points& points, const ExecutionContext& context)
-{
-  const LaplaceOperator laplace(mesh, points, LaplacianWeights::Cotangent, context);
-  const auto size = static_cast<Eigen::Index>(vertices.size());
-  Eigen::VectorXd inverseMass(size);
-  Field positions(size, 3);
-  std::vector<char> isHeld(vertices.size());
-  for (Eigen::Index i = 0; i < size; ++i)
-  {
-    const int v = vertices[i];
-    inverseMass[i] = 1.0 / laplace.GetMass()[v];
-    positions.row(i) = points.row(v);
-    isHeld[i] = !isInside[v];
-  }
-  Anchors anchors = Anchors::Hard(isHeld);
-  anchors.Vertices = vertices;
-  // The negative weights of obtuse triangles, of which fans at a seam have many, would
-  // fold the surface.
-  const Eigen::VectorXd weights = laplace.GetWeights().cwiseMax(0.0);
-  AnchoredSystem system;
-  system.Factorize(
-    PolyharmonicMatrix(Laplacian(mesh, weights, vertices), inverseMass, 2), anchors, context);
-  system.Interpolate(positions);
-  for (Eigen::Index i = 0; i < size; ++i)
-  {
-    if (!isHeld[i])
-    {
-      points.row(vertices[i]) = positions.row(i);
-    }
-  }
-}
-}
-
-void FairRegion(const TriangleMesh& mesh, const std::vector<int>& region, Points& points,
+RegionFit::RegionFit(const TriangleMesh& mesh, const std::vector<int>& region, const Points& shape,
   const ExecutionContext& context)
-{
   // Equations see two rings around the region; with a third one their rows are complete.
+  : Vertices(GrowByRings(mesh, region, 3))
+{
   // In the order of the surface, which factors like better than that of the rings.
-  std::vector<int> vertices = GrowByRings(mesh, region, 3);
-  std::sort(vertices.begin(), vertices.end());
+  std::sort(this->Vertices.begin(), this->Vertices.end());
   std::vector<char> isInside(mesh.NumberOfVertices(), 0);
   for (const int v : region)
   {
     isInside[v] = 1;
   }
-  if (!vertices.empty())
+  const LaplaceOperator laplace(mesh, shape, LaplacianWeights::Cotangent, context);
+  this->InverseMass.resize(static_cast<Eigen::Index>(this->Vertices.size()));
+  for (std::size_t i = 0; i < this->Vertices.size(); ++i)
   {
-    // The first surface is smoother than the fold, and so are its weights.
-    Solve(mesh, vertices, isInside, points, context.Part(0.0, 0.5));
-    Solve(mesh, vertices, isInside, points, context.Part(0.5, 1.0));
+    const int v = this->Vertices[i];
+    this->InverseMass[static_cast<Eigen::Index>(i)] = 1.0 / laplace.GetMass()[v];
+    this->IsHeld.push_back(!isInside[v]);
+  }
+  this->Matrix = Laplacian(mesh, laplace.GetWeights().cwiseMax(0.0), this->Vertices);
+  Anchors anchors = Anchors::Hard(this->IsHeld);
+  anchors.Vertices = this->Vertices;
+  this->System.FactorizeFit(this->Matrix, this->InverseMass, anchors, AnchorMode::Hard, context);
+}
+
+Points RegionFit::Gather(const Points& points) const
+{
+  Points gathered(static_cast<Eigen::Index>(this->Vertices.size()), 3);
+  for (std::size_t i = 0; i < this->Vertices.size(); ++i)
+  {
+    gathered.row(static_cast<Eigen::Index>(i)) = points.row(this->Vertices[i]);
+  }
+  return gathered;
+}
+
+Points RegionFit::Laplacians(const Points& points) const
+{
+  return this->InverseMass.asDiagonal() * Points(this->Matrix * this->Gather(points));
+}
+
+void RegionFit::Solve(const Points& laplacians, Points& points) const
+{
+  Field positions = this->Gather(points);
+  this->System.Solve(laplacians, positions);
+  for (std::size_t i = 0; i < this->Vertices.size(); ++i)
+  {
+    if (!this->IsHeld[i])
+    {
+      points.row(this->Vertices[i]) = positions.row(static_cast<Eigen::Index>(i));
+    }
+  }
+}
+
+void FairRegion(const TriangleMesh& mesh, const std::vector<int>& region, Points& points,
+  const ExecutionContext& context)
+{
+  if (region.empty())
+  {
+    return;
+  }
+  // The first surface is smoother than the fold, and so are its weights.
+  for (const double from : { 0.0, 0.5 })
+  {
+    const RegionFit fit(mesh, region, points, context.Part(from, from + 0.5));
+    fit.Solve(Points::Zero(static_cast<Eigen::Index>(fit.GetVertices().size()), 3), points);
   }
 }
 }
