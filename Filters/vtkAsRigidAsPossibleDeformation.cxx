@@ -23,6 +23,7 @@ void vtkAsRigidAsPossibleDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfIterations: " << this->NumberOfIterations << "\n";
   os << indent << "InitialEnergy: " << this->InitialEnergy << "\n";
   os << indent << "FinalEnergy: " << this->FinalEnergy << "\n";
+  os << indent << "Residual: " << this->Residual << "\n";
   os << indent << "Converged: " << this->Converged << "\n";
 }
 
@@ -32,6 +33,7 @@ void vtkAsRigidAsPossibleDeformation::ForgetResults()
   this->NumberOfIterations = 0;
   this->InitialEnergy = 0.0;
   this->FinalEnergy = 0.0;
+  this->Residual = 0.0;
   this->Converged = false;
 }
 
@@ -70,6 +72,7 @@ cartan::DeformationMethod vtkAsRigidAsPossibleDeformation::NewMethod(
     this->NumberOfIterations = rigid->GetNumberOfIterations();
     this->InitialEnergy = rigid->GetEnergies().front();
     this->FinalEnergy = rigid->GetEnergies().back();
+    this->Residual = rigid->GetResidual();
     this->Converged = rigid->HasConverged();
     if (!std::isfinite(this->FinalEnergy))
     {

@@ -16,7 +16,7 @@
  *   finer triangles to an elastic membrane, keeps negative weights.
  * - SMOOTHED_ROTATIONS: SPOKES with a penalty on differences between the
  *   rotations of neighbors, as in a thick shell: smooth bends. Bending is its
- *   weight. Converges more slowly, especially on fine surfaces.
+ *   weight.
  *
  * An iteration costs about as much as a motion of a linear method. Scale and
  * shear of a motion move the handle's points; the rest of the surface resists
@@ -141,12 +141,15 @@ public:
   ///@{
   /**
    * Of the last update: the number of iterations; the energy of the initial
-   * guess and of the result, in squared length units for weights without unit;
-   * and whether the last iteration's decrease fell below the tolerance.
+   * guess and of the result, in squared length units for weights without unit; an
+   * estimate, right to a factor of ten near the end, of the part of the energy that
+   * the last iteration and all after it could gain; and whether the last iteration's
+   * decrease fell below the tolerance.
    */
   vtkGetMacro(NumberOfIterations, int);
   vtkGetMacro(InitialEnergy, double);
   vtkGetMacro(FinalEnergy, double);
+  vtkGetMacro(Residual, double);
   vtkGetMacro(Converged, bool);
   ///@}
 
@@ -170,6 +173,7 @@ private:
   int NumberOfIterations = 0;
   double InitialEnergy = 0.0;
   double FinalEnergy = 0.0;
+  double Residual = 0.0;
   bool Converged = false;
 };
 

@@ -73,7 +73,7 @@ AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, Rigi
   this->Current = this->Rest;
   this->Rotations = Identities(this->Cells.NumberOfSites());
   this->CellEnergies.setZero(this->Cells.Count);
-  this->Residual.resize(this->System->NumberOfUnknowns(), 3);
+  this->Forces.resize(this->System->NumberOfUnknowns(), 3);
   context.Report(1.0);
 }
 
@@ -83,7 +83,7 @@ std::size_t AsRigidAsPossibleDeformer::GetBytes() const
 {
   return this->GetBaseBytes() + this->Guess->GetBytes() + this->Cells.GetBytes() +
     TotalBytes(this->Rims, this->HoldsRotation, this->MovingHandles, this->Rest, this->Current,
-      this->Rotations, this->Before, this->Covariances, this->CellEnergies, this->Residual,
+      this->Rotations, this->Before, this->Covariances, this->CellEnergies, this->Forces,
       this->Energies);
 }
 
@@ -193,14 +193,13 @@ void AsRigidAsPossibleDeformer::EvaluateCell(int cell, double bending, const Han
       this->CellEnergies[cell] += squaredWeight * pull.squaredNorm();
       residual += 0.5 * squaredWeight * pull;
     }
-    this->Residual.row(cell) = residual;
+    this->Forces.row(cell) = residual;
   }
 }
 
-double AsRigidAsPossibleDeformer::Evaluate(
+double AsRigidAsPossibleDeformer::SumEnergies(
   const HandleTargets& targets, const ExecutionContext& context)
 {
-  this->FitRotations(context);
   const double bending = this->BendingFactor();
   context.For(this->Cells.ActiveCount,
     [&](int begin, int end)
@@ -272,22 +271,36 @@ void AsRigidAsPossibleDeformer::Start(
   }
 }
 
-/// L step = b - L x, in the order of the cells.
-void AsRigidAsPossibleDeformer::SolveStep(Eigen::VectorXd& step)
+/// L y = z for three values per cell, in the order of the cells.
+void AsRigidAsPossibleDeformer::SolveCells(
+  const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::VectorXd& solution)
 {
   const int numberOfUnknowns = this->System->NumberOfUnknowns();
   Eigen::MatrixXd rightHandSide(numberOfUnknowns, 3);
   // In the order of the system, whose columns lie far apart.
   for (int i = 0; i < numberOfUnknowns; ++i)
   {
-    rightHandSide.row(i) = this->Residual.row(this->Cells.CellOfUnknown[i]);
+    rightHandSide.row(i) = values.segment<3>(3 * this->Cells.CellOfUnknown[i]);
   }
-  const Eigen::Map<const Eigen::MatrixXd> solution = this->System->Solve(rightHandSide);
-  step.resize(3 * numberOfUnknowns);
+  const Eigen::Map<const Eigen::MatrixXd> solved = this->System->Solve(rightHandSide);
+  solution.resize(3 * numberOfUnknowns);
   for (int i = 0; i < numberOfUnknowns; ++i)
   {
-    step.segment<3>(3 * this->Cells.CellOfUnknown[i]) = solution.row(i);
+    solution.segment<3>(3 * this->Cells.CellOfUnknown[i]) = solved.row(i);
   }
+}
+
+/// L step = b - L x.
+void AsRigidAsPossibleDeformer::SolveStep(Eigen::VectorXd& step)
+{
+  this->SolveCells(
+    Eigen::Map<const Eigen::VectorXd>(this->Forces.data(), this->Forces.size()), step);
+}
+
+bool AsRigidAsPossibleDeformer::HasSettled(double before, double after) const
+{
+  const double negligible = RoundingPart * this->Cells.EnergyOfVanishedEdges(this->Rest);
+  return before - after <= this->Tolerance * (std::abs(after) + negligible);
 }
 
 void AsRigidAsPossibleDeformer::WarnIfUnsettled(const Eigen::VectorXd& step)
@@ -333,26 +346,29 @@ void AsRigidAsPossibleDeformer::WriteResult(bool wantTransforms, DeformedSurface
   }
 }
 
-void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
-  DeformedSurface& result, const ExecutionContext& context)
+/// Fits and solves in turn.
+void AsRigidAsPossibleDeformer::Alternate(
+  const HandleTargets& targets, Eigen::VectorXd& step, const ExecutionContext& context)
 {
-  this->Start(targets, result, context.Part(0.0, 0.1));
-  const int numberOfUnknowns = this->System->NumberOfUnknowns();
-  Eigen::Map<Eigen::VectorXd> unknowns(this->Current.data(), 3 * numberOfUnknowns);
+  Eigen::Map<Eigen::VectorXd> unknowns(this->Current.data(), 3 * this->System->NumberOfUnknowns());
   AndersonAcceleration extrapolation(1e-12);
-  Eigen::VectorXd step;
   Eigen::VectorXd plain;
   Eigen::VectorXd next;
   Matrices rotations;
-  const double negligible = RoundingPart * this->Cells.EnergyOfVanishedEdges(this->Rest);
-  this->Energies = { this->Evaluate(targets, context) };
-  this->Converged = numberOfUnknowns == 0;
+  const auto evaluate = [&]
+  {
+    this->FitRotations(context);
+    return this->SumEnergies(targets, context);
+  };
   while (!this->Converged && this->GetNumberOfIterations() < this->MaximumIterations)
   {
     const int iteration = this->GetNumberOfIterations();
     context.Report(0.1 + 0.85 * iteration / this->MaximumIterations);
     const double before = this->Energies.back();
     this->SolveStep(step);
+    // E has the second derivatives 4 L and the gradient -4 (b - L x).
+    this->Residual =
+      2.0 * step.dot(Eigen::Map<const Eigen::VectorXd>(this->Forces.data(), step.size())) / before;
     plain = unknowns + step;
     const bool isExtrapolated = extrapolation.Next(plain, step, next);
     unknowns = next;
@@ -360,7 +376,7 @@ void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, boo
     {
       rotations = this->Rotations;
     }
-    double after = this->Evaluate(targets, context);
+    double after = evaluate();
     if (isExtrapolated && !(before - after > this->Tolerance * std::abs(after)))
     {
       unknowns = plain;
@@ -370,10 +386,33 @@ void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, boo
         // Coupled rotations depend on where they come from.
         this->Rotations = rotations;
       }
-      after = this->Evaluate(targets, context);
+      after = evaluate();
     }
     this->Energies.push_back(after);
-    this->Converged = before - after <= this->Tolerance * (std::abs(after) + negligible);
+    this->Converged = this->HasSettled(before, after);
+  }
+}
+
+void AsRigidAsPossibleDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
+  DeformedSurface& result, const ExecutionContext& context)
+{
+  this->Start(targets, result, context.Part(0.0, 0.1));
+  const bool descends = this->CouplesFar() && this->MaximumIterations > 0;
+  if (!descends)
+  {
+    this->FitRotations(context);
+  }
+  this->Energies = { this->SumEnergies(targets, context) };
+  this->Residual = 0.0;
+  this->Converged = this->System->NumberOfUnknowns() == 0;
+  Eigen::VectorXd step;
+  if (descends)
+  {
+    this->DescendByTurns(targets, step, context);
+  }
+  else
+  {
+    this->Alternate(targets, step, context);
   }
   if (this->AreCoupled && !this->Converged && step.size() > 0)
   {

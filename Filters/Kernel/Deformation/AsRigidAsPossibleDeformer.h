@@ -64,6 +64,12 @@ enum class InitialGuess
 /// Acceleration for Geometry Optimization and Physics Simulation, 2018) where
 /// that lowers the energy by more than the tolerance, so it still never rises.
 ///
+/// Taking turns hands coupled rotations on from neighbor to neighbor, far too slowly:
+/// from alpha n = 1 on, with n unknown vertices, SmoothedRotations descends by turns of
+/// all rotations at once, with the positions at their best for them. L-BFGS gives the
+/// turns, and the matrix L of the positions serves there too: 8 alpha A L is what couples
+/// rotations. A step is two solves.
+///
 /// Held vertices whose neighbors are all held get the rotation that fits their
 /// ring, and keep it. With ConstrainPositions off, moving handles are held in
 /// rotation instead of in position.
@@ -100,6 +106,12 @@ public:
   /// Whether the last step's decrease fell below the tolerance.
   bool HasConverged() const { return this->Converged; }
 
+  /// An estimate of the part of E that the last step and all after it could gain:
+  /// g^T P^-1 g / 2 E, with the gradient g before that step and the part P of the second
+  /// derivatives that is the system's matrix. Near the end it is right to a factor of
+  /// ten. 0 without steps.
+  double GetResidual() const { return this->Residual; }
+
   int GetNumberOfFactorizations() const override
   {
     return this->Guess->GetNumberOfFactorizations();
@@ -120,7 +132,7 @@ private:
   Eigen::Matrix3d Covariance(int cell) const;
   Eigen::Matrix3d CoupledRotations(int cell) const;
   void FitRotations(const ExecutionContext& context);
-  double Evaluate(const HandleTargets& targets, const ExecutionContext& context);
+  double SumEnergies(const HandleTargets& targets, const ExecutionContext& context);
   void EvaluateCell(int cell, double bending, const HandleTargets& targets);
   double RimEnergy(int spoke, const Eigen::Matrix3d& rotation) const;
   double TimesOfBending(int cell, int neighbor) const;
@@ -130,7 +142,20 @@ private:
   double BendingFactor() const { return this->AreCoupled ? this->Bending * this->FreeArea : 0.0; }
   void Start(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
+  void SolveCells(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::VectorXd& solution);
   void SolveStep(Eigen::VectorXd& step);
+  bool HasSettled(double before, double after) const;
+  void Alternate(
+    const HandleTargets& targets, Eigen::VectorXd& step, const ExecutionContext& context);
+  bool CouplesFar() const;
+  void SlopeOfTurns(
+    Eigen::VectorXd& slope, Eigen::VectorXd& solved, const ExecutionContext& context);
+  double Turn(double t, const Eigen::VectorXd& direction, const HandleTargets& targets,
+    Eigen::VectorXd& step, const ExecutionContext& context);
+  double SearchAlong(Eigen::VectorXd& direction, double promised, double before,
+    const HandleTargets& targets, Eigen::VectorXd& step, const ExecutionContext& context);
+  void DescendByTurns(
+    const HandleTargets& targets, Eigen::VectorXd& step, const ExecutionContext& context);
   void WarnIfUnsettled(const Eigen::VectorXd& step);
   void WriteResult(bool wantTransforms, DeformedSurface& result) const;
 
@@ -154,9 +179,10 @@ private:
   Matrices Before;              // the same before the last fit, where coupled
   Matrices Covariances;         // #active cells x 9, where coupled
   Eigen::VectorXd CellEnergies; // #cells
-  Points Residual;              // #unknowns x 3: b - L x
+  Points Forces;                // #unknowns x 3: b - L x
   bool HasPrevious = false;
   std::vector<double> Energies;
+  double Residual = 0.0;
   bool Converged = false;
   std::string Warning;
 };
