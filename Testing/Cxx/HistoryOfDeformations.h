@@ -4,6 +4,7 @@
 #include "History.h"
 
 #include "vtkAsRigidAsPossibleDeformation.h"
+#include "vtkCurveDeformation.h"
 #include "vtkHandleMotion.h"
 #include "vtkLaplacianDeformation.h"
 #include "vtkMultiresolutionDeformation.h"
@@ -128,6 +129,45 @@ inline Subject Volumetric()
       Of<Filter>(2, [](Filter* f, int value) { f->SetVolumeRounds(3 - value); }) }));
 }
 
+/// A line that a curve along a bar can follow.
+inline vtkSmartPointer<vtkPolyData> TargetLine(double height)
+{
+  auto line = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell(3);
+  lines->InsertCellPoint(points->InsertNextPoint(0.5, 0.5, 0.5));
+  lines->InsertCellPoint(points->InsertNextPoint(0.5 + height, 0.5, 1.5));
+  lines->InsertCellPoint(points->InsertNextPoint(0.5, 0.5, 3.5));
+  line->SetPoints(points);
+  line->SetLines(lines);
+  return line;
+}
+
+inline Subject Curve()
+{
+  using Filter = vtkCurveDeformation;
+  return Make<Filter>("Curve",
+    { InputChoice(),
+      Of<Filter>(3,
+        [](Filter* f, int value) { f->SetTargetData(value ? TargetLine(0.3 * value) : nullptr); }),
+      Of<Filter>(3,
+        [](Filter* f, int value)
+        {
+          f->SetPointId(0, 10 + value);
+          f->SetPointId(1, 60);
+        }),
+      Enumeration<Filter>(4, &Filter::SetSource), Enumeration<Filter>(5, &Filter::SetMethod),
+      Number<Filter>(&Filter::SetFeatureAngle, { 30.0, 120.0 }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetViewDirection(1.0, 0.3 * value, 0.2); }),
+      Number<Filter>(&Filter::SetFidelity, { 1.0, 0.3 }),
+      Number<Filter>(&Filter::SetReach, { 0.0, 1.0 }),
+      Number<Filter>(&Filter::SetRidgeHeight, { 0.0, 0.1 }),
+      Number<Filter>(&Filter::SetRidgeWidth, { 0.0, 0.7 }), Switch<Filter>(&Filter::SetSharpRidge),
+      Switch<Filter>(&Filter::SetReverseTarget), Switch<Filter>(&Filter::SetCurveRotations),
+      Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "None", "Weight" }) });
+}
+
 inline std::vector<Subject> DeformationSubjects()
 {
   using RotationInvariant = vtkRotationInvariantDeformation;
@@ -155,6 +195,7 @@ inline std::vector<Subject> DeformationSubjects()
         3, [](Multiresolution* f, int value) { f->SetSmoothness(1 + value); }) })),
     AsRigidAsPossible(),
     Volumetric(),
+    Curve(),
   };
 }
 }

@@ -13,7 +13,7 @@ FILTERS = {
     "DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",
     "LeastSquaresMesh", "HighPassQuantization", "SpectralWatermark",
     "BoundaryLoops", "MeshMerge", "CoatingTransfer", "LandmarkHandles", "CarryAlong",
-    "VolumetricDeformation",
+    "VolumetricDeformation", "CurveDeformation",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Mesh/EdgePaths.h"
+
+#include "Mesh/Geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace cartan
+{
+namespace
+{
+/// Marks borders, and edges whose left and right area vectors `cuts` says yes to.
+template <typename Cuts>
+EdgeMask MarkEdges(const TriangleMesh& mesh, const Points& points, const Cuts& cuts)
+{
+  const Points areas = TriangleAreaVectors(points, mesh.GetTriangles());
+  EdgeMask mask(mesh.NumberOfDirectedEdges(), 0);
+  for (int d = 0; d < mesh.NumberOfDirectedEdges(); ++d)
+  {
+    const int left = mesh.LeftTriangle(d);
+    const int right = mesh.LeftTriangle(mesh.Twin(d));
+    mask[d] = left < 0 || right < 0 ||
+      cuts(Eigen::Vector3d(areas.row(left)), Eigen::Vector3d(areas.row(right)));
+  }
+  return mask;
+}
+}
+
+EdgeMask FeatureEdges(const TriangleMesh& mesh, const Points& points, double angle)
+{
+  return MarkEdges(mesh, points,
+    [angle](const Eigen::Vector3d& left, const Eigen::Vector3d& right)
+    { return std::atan2(left.cross(right).norm(), left.dot(right)) > angle; });
+}
+
+EdgeMask SilhouetteEdges(
+  const TriangleMesh& mesh, const Points& points, const Eigen::Vector3d& direction)
+{
+  return MarkEdges(mesh, points,
+    [&direction](const Eigen::Vector3d& left, const Eigen::Vector3d& right)
+    { return (left.dot(direction) > 0.0) != (right.dot(direction) > 0.0); });
+}
+
+std::vector<int> ShortestEdgePath(
+  const TriangleMesh& mesh, const Points& points, int from, int to, const EdgeMask& allowed)
+{
+  std::vector<double> lengths(mesh.NumberOfVertices(), std::numeric_limits<double>::infinity());
+  std::vector<int> before(mesh.NumberOfVertices(), -1);
+  std::set<std::pair<double, int>> front = { { 0.0, from } };
+  lengths[from] = 0.0;
+  while (!front.empty() && front.begin()->second != to)
+  {
+    const int v = front.begin()->second;
+    front.erase(front.begin());
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      const int w = mesh.Neighbor(d);
+      const double length = lengths[v] + (points.row(w) - points.row(v)).norm();
+      if ((allowed.empty() || allowed[d]) && length < lengths[w])
+      {
+        front.erase({ lengths[w], w });
+        front.emplace(length, w);
+        lengths[w] = length;
+        before[w] = v;
+      }
+    }
+  }
+  std::vector<int> path;
+  for (int v = std::isfinite(lengths[to]) ? to : -1; v >= 0; v = before[v])
+  {
+    path.push_back(v);
+  }
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+int NearestOnEdges(
+  const TriangleMesh& mesh, const Points& points, int vertex, const EdgeMask& allowed)
+{
+  int nearest = -1;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int d = 0; d < mesh.NumberOfDirectedEdges(); ++d)
+  {
+    const int v = mesh.Origin(d);
+    const double distance = (points.row(v) - points.row(vertex)).norm();
+    if (allowed[d] && mesh.Component(v) == mesh.Component(vertex) && distance < shortest)
+    {
+      nearest = v;
+      shortest = distance;
+    }
+  }
+  return nearest;
+}
+
+std::vector<int> PathThrough(const TriangleMesh& mesh, const Points& points,
+  const std::vector<int>& picks, const EdgeMask& allowed)
+{
+  const auto place = [&](int v)
+  { return allowed.empty() ? v : NearestOnEdges(mesh, points, v, allowed); };
+  std::vector<int> path;
+  for (std::size_t i = 0; i + 1 < picks.size(); ++i)
+  {
+    const int from = place(picks[i]);
+    const int to = place(picks[i + 1]);
+    const std::vector<int> part =
+      from < 0 || to < 0 ? std::vector<int>() : ShortestEdgePath(mesh, points, from, to, allowed);
+    if (part.size() < 2)
+    {
+      throw Error(ErrorCode::BadInput,
+        "There is no path along the edges of Source from point " + std::to_string(picks[i]) +
+          " to point " + std::to_string(picks[i + 1]) +
+          ": choose two points of one such line, another FeatureAngle or ViewDirection, or set "
+          "Source to the shortest path.");
+    }
+    path.insert(path.end(), part.begin() + (path.empty() ? 0 : 1), part.end());
+  }
+  std::vector<int> sorted = path;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The source curve passes point " + std::to_string(*twice) +
+        " twice: choose PointIds in the order of a curve that does not cross itself.");
+  }
+  return path;
+}
+
+std::vector<int> ChainVertices(const TriangleMesh& mesh, std::vector<int> vertices)
+{
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  const auto neighbors = [&](int v)
+  {
+    std::vector<int> found;
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      if (std::binary_search(vertices.begin(), vertices.end(), mesh.Neighbor(d)))
+      {
+        found.push_back(mesh.Neighbor(d));
+      }
+    }
+    return found;
+  };
+  IdSample branches;
+  int first = -1;
+  for (const int v : vertices)
+  {
+    const std::size_t count = neighbors(v).size();
+    if (count > 2)
+    {
+      branches.Add(v);
+    }
+    first = first < 0 && count == 1 ? v : first;
+  }
+  std::vector<int> chain;
+  int before = -1;
+  for (int v = branches.IsEmpty() ? first : -1; v >= 0;)
+  {
+    chain.push_back(v);
+    int next = -1;
+    for (const int w : neighbors(v))
+    {
+      next = w != before ? w : next;
+    }
+    before = v;
+    v = next;
+  }
+  if (chain.size() < 2 || chain.size() < vertices.size())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The " + std::to_string(vertices.size()) + " selected points are not one line of edges" +
+        (branches.IsEmpty() ? "" : ": it branches at " + branches.Describe("point", "points")) +
+        ". Select the points of one line, or set Source to the shortest path between points of "
+        "it in their order.");
+  }
+  return chain;
+}
+}
