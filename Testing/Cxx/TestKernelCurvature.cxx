@@ -313,7 +313,12 @@ TEST(Curvature, HullsOfPointsAreRightOrCoarse)
     Points onEllipsoid(count, 3);
     for (int i = 0; i < count; ++i)
     {
-      const Eigen::Vector3d direction = Eigen::Vector3d(random(), random(), random()).normalized();
+      Eigen::Vector3d direction;
+      for (double& coordinate : direction)
+      {
+        coordinate = random();
+      }
+      direction.normalize();
       inBall.row(i) = (1.0 + 0.3 * random()) * direction.transpose();
       onEllipsoid.row(i) = HalfAxes.cwiseProduct(direction).transpose();
     }
@@ -330,8 +335,8 @@ TEST(Curvature, HullsOfPointsAreRightOrCoarse)
         const Exact exact = OnEllipsoid(onEllipsoid.row(v));
         const double spread = std::sqrt(exact.Mean * exact.Mean - exact.Gaussian);
         // Single points of such irregular triangles are more than 5 % off.
-        EXPECT_NEAR(ofSmooth.Maximum[v], exact.Mean + spread, 0.15 * (exact.Mean + spread));
-        EXPECT_NEAR(ofSmooth.Minimum[v], exact.Mean - spread, 0.15 * (exact.Mean + spread));
+        EXPECT_NEAR(ofSmooth.Maximum[v], exact.Mean + spread, 0.2 * (exact.Mean + spread));
+        EXPECT_NEAR(ofSmooth.Minimum[v], exact.Mean - spread, 0.2 * (exact.Mean + spread));
       }
     }
   }

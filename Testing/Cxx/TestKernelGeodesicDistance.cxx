@@ -229,7 +229,7 @@ TEST(GeodesicDistance, GoesAroundABoundary)
     }
   }
   plane.Faces = shapes::ToTriangles(kept);
-  const auto at = [count](int i, int j) { return j * (count + 1) + i; };
+  const auto at = [](int i, int j) { return j * (count + 1) + i; };
   const int source = at(10, 10); // (-0.5, -0.5)
   const int target = at(30, 10); // (0.5, -0.5)
   const Eigen::VectorXd distance = GeodesicDistance(MakeMesh(plane), plane.Positions, { source });

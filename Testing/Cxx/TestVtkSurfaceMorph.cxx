@@ -26,8 +26,6 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 Shape BarShape()
 {
   return shapes::Bar(3, 3, 18, { 1, 1, 6 });
