@@ -4,13 +4,16 @@
 #include "Bridge/DeformationMethod.h"
 
 #include "Bridge/PointArrays.h"
+#include "Kernel/Base/Constants.h"
 #include "Kernel/Deformation/FrameDeformer.h"
 #include "Kernel/Measure/LocalVolumes.h"
 #include "Kernel/Measure/ShapeDistance.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Mesh/RayTree.h"
 
 #include "vtkPolyData.h"
 
+#include <cmath>
 #include <limits>
 
 namespace
@@ -34,6 +37,11 @@ cartan::ContentKey KeyOfModel(const cartan::HandleProblem& problem, cartan::Cont
   return problem.Whole
     ? surface.AddBytes(triangles.data(), static_cast<std::size_t>(triangles.size()) * sizeof(int))
     : surface;
+}
+
+double DiagonalOf(const cartan::HandleProblem& problem)
+{
+  return cartan::BoundingDiagonal(*problem.Rest, problem.Mesh->GetTriangles());
 }
 
 /// The part of the volume under each vertex; NaN where none is enclosed.
@@ -62,6 +70,18 @@ void vtkFrameDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PositionWeights: " << this->PositionWeights << "\n";
   os << indent << "GenerateVolumeArrays: " << this->GenerateVolumeArrays << "\n";
   os << indent << "GenerateShapeDistance: " << this->GenerateShapeDistance << "\n";
+  os << indent << "TabulateTurns: " << this->TabulateTurns << "\n";
+  os << indent << "TurnRange: " << this->TurnRange << "\n";
+  os << indent << "TurnTolerance: " << this->TurnTolerance << "\n";
+  os << indent << "TabulatedRange: " << this->TabulatedRange << "\n";
+  os << indent << "TabulationError: " << this->TabulationError << "\n";
+}
+
+void vtkFrameDeformation::ForgetResults()
+{
+  this->Superclass::ForgetResults();
+  this->TabulatedRange = 0.0;
+  this->TabulationError = 0.0;
 }
 
 void vtkFrameDeformation::AddSettings(cartan::ContentKey& settings) const
@@ -89,9 +109,20 @@ cartan::DeformationMethod vtkFrameDeformation::FrameMethod(
   auto* frames = deformer.get();
   cartan::DeformationMethod method;
   method.Deformer = std::move(deformer);
-  method.Configure = [this, frames](cartan::FilterRun& run) { this->CorrectVolume(*frames, run); };
+  method.Configure = [this, frames](cartan::FilterRun& run)
+  {
+    this->CorrectVolume(*frames, run);
+    this->ConfigureTable(*frames);
+  };
   method.Decorate = [this, frames](const cartan::DeformedSurface& result, cartan::FilterRun& run)
-  { this->AddVolumeArrays(*frames, result, run); };
+  {
+    if (const cartan::TurnTable* table = frames->GetUsedTable())
+    {
+      this->TabulatedRange = table->GetRange() / cartan::Pi * 180.0;
+      this->TabulationError = table->GetError() / DiagonalOf(frames->GetProblem());
+    }
+    this->AddVolumeArrays(*frames, result, run);
+  };
   return method;
 }
 
@@ -110,6 +141,19 @@ void vtkFrameDeformation::CorrectVolume(cartan::FrameDeformer& deformer, cartan:
       [&] { return NewModel(problem, run.Context().Part(0.6, 0.8)); });
     deformer.SetVolumeModel(model);
   }
+}
+
+void vtkFrameDeformation::ConfigureTable(cartan::FrameDeformer& deformer) const
+{
+  if (!(std::isfinite(this->TurnRange) && std::isfinite(this->TurnTolerance)))
+  {
+    throw cartan::Error(
+      cartan::ErrorCode::BadInput, "TurnRange and TurnTolerance must be finite numbers.");
+  }
+  deformer.SetTurnTable(this->TabulateTurns
+      ? cartan::TurnTable::Options{ this->TurnRange / 180.0 * cartan::Pi,
+          this->TurnTolerance * DiagonalOf(deformer.GetProblem()) }
+      : cartan::TurnTable::Options{});
 }
 
 bool vtkFrameDeformation::UsesVolumeModel() const

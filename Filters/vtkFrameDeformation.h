@@ -127,6 +127,52 @@ public:
   vtkBooleanMacro(GenerateShapeDistance, bool);
   ///@}
 
+  ///@{
+  /**
+   * Whether to read turning motions from a table instead of solving for each: for
+   * dragging large surfaces. Where the handles turn rigidly about one axis (any axis,
+   * with any translation; the angles of several handles in a fixed ratio), the surface
+   * is a sum over a few fields that depend on the angle only. The first motion makes the
+   * table, at the cost of about fifteen motions and of about 150 bytes per free point, with
+   * vtkRotationInvariantDeformation of twice as much; each one after it is a sum. Motions that the
+   * table does not serve are solved for: those with scale or shear, with targets that differ from
+   * point to point, beyond TurnRange, with FRAME_SCALING or CloseVolume.
+   * vtkRotationInvariantDeformation and vtkShapePreservingDeformation have tables,
+   * vtkPoissonDeformation has none. Default: off.
+   */
+  vtkSetMacro(TabulateTurns, bool);
+  vtkGetMacro(TabulateTurns, bool);
+  vtkBooleanMacro(TabulateTurns, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The largest angle that the table is to serve, in degrees, > 0. Where the method needs
+   * too many fields for it, the table is shorter (GetTabulatedRange()). Default: 180.
+   */
+  vtkSetClampMacro(TurnRange, double, 1e-3, 3600.0);
+  vtkGetMacro(TurnRange, double);
+  ///@}
+
+  ///@{
+  /**
+   * How far points of the table may be from the solution, as a fraction of the bounding box's
+   * diagonal. Default: 1e-5.
+   */
+  vtkSetClampMacro(TurnTolerance, double, 1e-6, 0.1);
+  vtkGetMacro(TurnTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of the table that the last update was read from: the largest angle that it serves, in
+   * degrees, and its largest distance to the solution as a fraction of the diagonal,
+   * measured at that angle and at half of it. Both are 0 if the last update was solved for.
+   */
+  vtkGetMacro(TabulatedRange, double);
+  vtkGetMacro(TabulationError, double);
+  ///@}
+
 protected:
   vtkFrameDeformation() = default;
   ~vtkFrameDeformation() override = default;
@@ -147,9 +193,11 @@ protected:
 
   void AddSettings(cartan::ContentKey& settings) const override;
   bool NeedsTransforms() const override { return this->GenerateShapeDistance; }
+  void ForgetResults() override;
 
 private:
   void CorrectVolume(cartan::FrameDeformer& deformer, cartan::FilterRun& run);
+  void ConfigureTable(cartan::FrameDeformer& deformer) const;
   bool UsesVolumeModel() const;
   void AddVolumeArrays(const cartan::FrameDeformer& deformer, const cartan::DeformedSurface& result,
     cartan::FilterRun& run);
@@ -159,6 +207,11 @@ private:
   int PositionWeights = LIKE_FRAMES;
   bool GenerateVolumeArrays = false;
   bool GenerateShapeDistance = false;
+  bool TabulateTurns = false;
+  double TurnRange = 180.0;
+  double TurnTolerance = 1e-5;
+  double TabulatedRange = 0.0;
+  double TabulationError = 0.0;
 };
 
 #endif

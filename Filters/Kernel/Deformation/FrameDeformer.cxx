@@ -58,7 +58,8 @@ std::size_t FrameDeformer::GetBytes() const
     (this->PositionSystem == this->FrameSystem ? 0 : this->PositionSystem->GetBytes()) +
     (this->Model ? this->Model->GetBytes() : 0) +
     TotalBytes(*this->EdgeWeights, this->RestHeights, this->HandleVertices, this->Transforms,
-      this->TriangleTransforms, this->TriangleWeights);
+      this->TriangleTransforms, this->TriangleWeights) +
+    (this->Table ? this->Table->GetBytes() : 0);
 }
 
 void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
@@ -74,15 +75,17 @@ void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransf
     result.Positions.row(held.Vertex) =
       HandleTarget(this->Problem, targets, held.Vertex, held.Handle).transpose();
   }
-  const bool isDirect = !this->PreservesVolume() &&
-    this->DeformDirectly(targets, result.Positions, context.Part(0.0, 0.4));
+  this->UsesTable = this->DeformByTable(targets, result.Positions, context.Part(0.0, 0.3));
+  const bool isDirect = this->UsesTable ||
+    (!this->PreservesVolume() &&
+      this->DeformDirectly(targets, result.Positions, context.Part(0.3, 0.4)));
   if (!isDirect || wantTransforms)
   {
     if (this->Transforms.rows() == 0)
     {
       this->Transforms = Identities(this->Problem.Mesh->NumberOfVertices());
     }
-    this->ComputeTransforms(targets, context.Part(0.0, 0.4));
+    this->ComputeTransforms(targets, context.Part(0.3, 0.4));
     context.Report(0.4);
   }
   if (!isDirect)
@@ -106,6 +109,104 @@ void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransf
     result.Transforms = this->Transforms;
   }
   context.Report(1.0);
+}
+
+bool FrameDeformer::DeformByTable(
+  const HandleTargets& targets, Points& positions, const ExecutionContext& context)
+{
+  // Frame scaling and the closing of volumes are not linear in the frames.
+  const bool isLinear = !this->PreservesVolume() ||
+    (this->Correction == VolumeCorrection::NeutralOffset && !this->Close);
+  Eigen::Vector3d axis;
+  Eigen::VectorXd angles;
+  if (!(this->TableOptions.Range > 0.0) || !isLinear || !this->FindTurns(targets, axis, angles))
+  {
+    return false;
+  }
+  Eigen::Index most = 0;
+  const double largest = angles.cwiseAbs().maxCoeff(&most);
+  if (largest > this->TableOptions.Range || (largest == 0.0 && angles.size() > 1))
+  {
+    return false;
+  }
+  const double angle = angles[most];
+  const Eigen::VectorXd ratios =
+    largest > 0.0 ? Eigen::VectorXd(angles / angle) : Eigen::VectorXd::Ones(1);
+  if (!this->HasTable(ratios, context) || std::abs(angle) > this->Table->GetRange())
+  {
+    return false;
+  }
+  std::vector<Eigen::Vector3d> translations;
+  for (const HandleMotion& motion : targets.Motions)
+  {
+    translations.push_back(motion.Translation);
+  }
+  this->Table->Evaluate(angle, axis, translations, positions, context);
+  return true;
+}
+
+/// Whether there is a table for these ratios, which may be made here.
+bool FrameDeformer::HasTable(const Eigen::VectorXd& ratios, const ExecutionContext& context)
+{
+  const auto areEqual = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b)
+  { return a.size() == b.size() && (a - b).cwiseAbs().maxCoeff() <= 1e-9; };
+  const Points* offsets = this->NeutralOffsets();
+  const bool isRepeated = areEqual(ratios, this->LastRatios);
+  this->LastRatios = ratios;
+  const bool isCurrent = this->Table && this->MadeWith.Range == this->TableOptions.Range &&
+    this->MadeWith.Tolerance == this->TableOptions.Tolerance && this->MadeWithOffsets == offsets;
+  if (isCurrent && areEqual(ratios, this->MadeForRatios))
+  {
+    return true;
+  }
+  // Handles that are dragged one after the other have another ratio at each motion.
+  if (isCurrent && !isRepeated)
+  {
+    return false;
+  }
+  this->Table.reset();
+  this->Table = std::make_unique<TurnTable>(this->PositionSystem, this->Problem.Rest, offsets,
+    this->TurnsWith(ratios), this->TableOptions, context);
+  this->MadeWith = this->TableOptions;
+  this->MadeWithOffsets = offsets;
+  this->MadeForRatios = ratios;
+  return true;
+}
+
+TurnsOfAngle FrameDeformer::TurnsWith(const Eigen::VectorXd& ratios) const
+{
+  const auto ofHandle = [ratios](int handle, double angle)
+  {
+    const double turn = ratios[handle] * angle;
+    return TurnParts{ std::sin(turn), 1.0 - std::cos(turn) };
+  };
+  if (this->PositionSystem == this->FrameSystem)
+  {
+    return { [this, ratios](int local, double angle) { return this->TurnOf(local, ratios, angle); },
+      ofHandle };
+  }
+  std::vector<int> frameLocal(this->Problem.Handle.size(), -1);
+  for (int i = 0; i < this->FrameSystem->NumberOfLocals(); ++i)
+  {
+    frameLocal[this->FrameSystem->Vertex(i)] = i;
+  }
+  return { [this, ratios, ofHandle, frameLocal = std::move(frameLocal)](int local, double angle)
+    {
+      const int frame = frameLocal[this->PositionSystem->Vertex(local)];
+      const int handle = this->PositionSystem->MovingHandle(local);
+      return frame >= 0 ? this->TurnOf(frame, ratios, angle)
+        : handle >= 0   ? ofHandle(handle, angle)
+                        : TurnParts{};
+    },
+    ofHandle };
+}
+
+/// Nothing unless they are asked for.
+const Points* FrameDeformer::NeutralOffsets() const
+{
+  return this->PreservesVolume() && this->Correction == VolumeCorrection::NeutralOffset
+    ? &this->Model->Offsets
+    : nullptr;
 }
 
 /// sum over the triangles t of a vertex i and its edges in them of
@@ -157,10 +258,7 @@ Eigen::Vector3d FrameDeformer::RightHandSide(int unknown, const HandleTargets& t
   const HandleLaplacian& system = *this->PositionSystem;
   const Points& rest = *this->Problem.Rest;
   const bool isByTriangle = this->TriangleTransforms.rows() > 0;
-  const Points* offsets =
-    this->PreservesVolume() && this->Correction == VolumeCorrection::NeutralOffset
-    ? &this->Model->Offsets
-    : nullptr;
+  const Points* offsets = this->NeutralOffsets();
   const int v = system.Vertex(unknown);
   const Eigen::Vector3d point = rest.row(v);
   const auto transform = MatrixAt(transforms, v);

@@ -3,6 +3,7 @@
 
 #include "Deformation/HandleLaplacian.h"
 #include "Deformation/SurfaceDeformer.h"
+#include "Deformation/TurnTable.h"
 #include "Measure/VolumeModel.h"
 
 namespace cartan
@@ -48,6 +49,15 @@ public:
   }
   const std::shared_ptr<const VolumeModel>& GetVolumeModel() const { return this->Model; }
 
+  /// With a range above 0, motions that turn the handles about one axis in a fixed ratio are
+  /// read from a table that the first of them makes; angles beyond the range, other motions,
+  /// and volume corrections that are not linear in the frames are solved for as ever. A table
+  /// for another ratio is made when two motions in a row have it.
+  void SetTurnTable(const TurnTable::Options& options) { this->TableOptions = options; }
+
+  /// The table that the last motion was read from; nothing where it was solved for.
+  const TurnTable* GetUsedTable() const { return this->UsesTable ? this->Table.get() : nullptr; }
+
   int GetNumberOfFactorizations() const override;
   int GetNumberOfFreeVertices() const override { return this->FrameSystem->NumberOfUnknowns(); }
   std::string GetWarning() const override { return this->Warning; }
@@ -83,6 +93,17 @@ protected:
     return false;
   }
 
+  /// For methods that a TurnTable serves: whether all handles turn rigidly about one axis, that
+  /// axis, and the angle of each moving handle. Then results about the rotations are set, too.
+  virtual bool FindTurns(const HandleTargets&, Eigen::Vector3d&, Eigen::VectorXd&) { return false; }
+
+  /// The turn of a local vertex of FrameSystem when each moving handle turns by its ratio times
+  /// `angle`.
+  virtual TurnParts TurnOf(int, const Eigen::VectorXd& /*ratios*/, double /*angle*/) const
+  {
+    return {};
+  }
+
   bool PreservesVolume() const
   {
     return this->Model && !this->Model->IsEmpty() &&
@@ -104,6 +125,11 @@ protected:
   std::string Warning;
 
 private:
+  bool DeformByTable(
+    const HandleTargets& targets, Points& positions, const ExecutionContext& context);
+  bool HasTable(const Eigen::VectorXd& ratios, const ExecutionContext& context);
+  TurnsOfAngle TurnsWith(const Eigen::VectorXd& ratios) const;
+  const Points* NeutralOffsets() const;
   void SolvePositions(const HandleTargets& targets, const Matrices& transforms,
     DeformedSurface& result, const ExecutionContext& context);
   Eigen::Vector3d RightHandSide(int unknown, const HandleTargets& targets,
@@ -118,5 +144,14 @@ private:
   std::shared_ptr<const VolumeModel> Model;
   Eigen::VectorXd RestHeights; ///< ColumnHeights at rest, empty until first needed
   Points TriangleWeights;      ///< CornerWeights, empty until first needed
+
+  TurnTable::Options TableOptions;
+  std::unique_ptr<TurnTable> Table;
+  bool UsesTable = false;
+  /// What Table was made for.
+  TurnTable::Options MadeWith;
+  const Points* MadeWithOffsets = nullptr;
+  Eigen::VectorXd MadeForRatios;
+  Eigen::VectorXd LastRatios;
 };
 }

@@ -158,6 +158,51 @@ void RotationInvariantDeformer::BlendMotions(
   this->AddIdentity(this->Harmonic.Blend(ofHandles, context), project, context);
 }
 
+/// Frames that are not projected need no table: DeformDirectly() is faster.
+bool RotationInvariantDeformer::FindTurns(
+  const HandleTargets& targets, Eigen::Vector3d& axis, Eigen::VectorXd& angles)
+{
+  if (targets.IsPerVertex() || !this->Harmonic.IsStored() || !this->UsesRotations(targets))
+  {
+    return false;
+  }
+  std::vector<Eigen::Vector3d> rotationVectors;
+  for (const HandleMotion& motion : targets.Motions)
+  {
+    if (!IsRotation(motion.Linear))
+    {
+      return false;
+    }
+    rotationVectors.push_back(VectorFromRotation(ProjectOnRotations(motion.Linear)));
+  }
+  angles.resize(static_cast<Eigen::Index>(rotationVectors.size()));
+  if (!FindSharedAxis(rotationVectors, axis))
+  {
+    return false;
+  }
+  for (std::size_t k = 0; k < rotationVectors.size(); ++k)
+  {
+    angles[static_cast<Eigen::Index>(k)] = rotationVectors[k].dot(axis);
+  }
+  return true;
+}
+
+/// The projection of BlendMotions.
+TurnParts RotationInvariantDeformer::TurnOf(
+  int local, const Eigen::VectorXd& ratios, double angle) const
+{
+  double cosine = 1.0;
+  double sine = 0.0;
+  for (Eigen::Index k = 0; k < ratios.size(); ++k)
+  {
+    const double weight = this->Harmonic.GetWeights()(local, k);
+    cosine += weight * (std::cos(ratios[k] * angle) - 1.0);
+    sine += weight * std::sin(ratios[k] * angle);
+  }
+  const double length = std::hypot(cosine, sine);
+  return length > 0.0 ? TurnParts{ sine / length, 1.0 - cosine / length } : TurnParts{};
+}
+
 void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& context)
 {
   const HandleLaplacian& system = *this->PositionSystem;

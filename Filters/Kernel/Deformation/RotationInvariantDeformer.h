@@ -55,6 +55,9 @@ protected:
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
   bool DeformDirectly(
     const HandleTargets& targets, Points& positions, const ExecutionContext& context) override;
+  bool FindTurns(
+    const HandleTargets& targets, Eigen::Vector3d& axis, Eigen::VectorXd& angles) override;
+  TurnParts TurnOf(int local, const Eigen::VectorXd& ratios, double angle) const override;
 
 private:
   bool UsesRotations(const HandleTargets& targets) const;

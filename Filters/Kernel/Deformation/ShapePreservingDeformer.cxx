@@ -90,12 +90,59 @@ Field ShapePreservingDeformer::Spread(const HandleTargets& targets, int componen
     });
 }
 
-void ShapePreservingDeformer::ComputeTransforms(
-  const HandleTargets& targets, const ExecutionContext& context)
+void ShapePreservingDeformer::ForgetIterations()
 {
   this->Iterations = 0;
   this->Residual = 0.0;
   this->Converged = true;
+}
+
+bool ShapePreservingDeformer::FindTurns(
+  const HandleTargets& targets, Eigen::Vector3d& axis, Eigen::VectorXd& angles)
+{
+  if (targets.IsPerVertex() || targets.RotationVectors.rows() || !this->Harmonic.IsStored())
+  {
+    return false;
+  }
+  std::vector<Eigen::Vector3d> rotationVectors;
+  for (std::size_t k = 0; k < targets.Motions.size(); ++k)
+  {
+    if (!this->Stretch(targets, { -1, static_cast<int>(k) }).isIdentity(1e-9))
+    {
+      return false;
+    }
+    rotationVectors.push_back(targets.Motions[k].RotationVector);
+  }
+  if (!FindSharedAxis(rotationVectors, axis))
+  {
+    return false;
+  }
+  angles.resize(static_cast<Eigen::Index>(rotationVectors.size()));
+  for (std::size_t k = 0; k < rotationVectors.size(); ++k)
+  {
+    angles[static_cast<Eigen::Index>(k)] = rotationVectors[k].dot(axis);
+  }
+  this->ForgetIterations();
+  this->SharedAxis = true;
+  return true;
+}
+
+/// Eq. 6.
+TurnParts ShapePreservingDeformer::TurnOf(
+  int local, const Eigen::VectorXd& ratios, double angle) const
+{
+  double turn = 0.0;
+  for (Eigen::Index k = 0; k < ratios.size(); ++k)
+  {
+    turn += this->Harmonic.GetWeights()(local, k) * ratios[k] * angle;
+  }
+  return { std::sin(turn), 1.0 - std::cos(turn) };
+}
+
+void ShapePreservingDeformer::ComputeTransforms(
+  const HandleTargets& targets, const ExecutionContext& context)
+{
+  this->ForgetIterations();
   std::vector<Eigen::Vector3d> rotationVectors;
   for (const HandleVertex& held : this->HandleVertices)
   {

@@ -64,8 +64,12 @@ public:
 
 protected:
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
+  bool FindTurns(
+    const HandleTargets& targets, Eigen::Vector3d& axis, Eigen::VectorXd& angles) override;
+  TurnParts TurnOf(int local, const Eigen::VectorXd& ratios, double angle) const override;
 
 private:
+  void ForgetIterations();
   Eigen::Vector3d RotationVector(const HandleTargets& targets, const HandleVertex& held) const;
   Eigen::Matrix3d Stretch(const HandleTargets& targets, const HandleVertex& held) const;
   Field Spread(const HandleTargets& targets, int components,
