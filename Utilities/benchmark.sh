@@ -6,10 +6,29 @@
 # Google Benchmark, with such a table at the end. Arguments are Google Benchmark's, for
 # example --benchmark_filter=104K. Takes about ten minutes and means something
 # only on a machine that does nothing else.
+#
+#     Utilities/benchmark.sh --against COMMIT
+#
+# times every method of this checkout against those of another commit instead, by
+# Utilities/compare_times.py. Takes about an hour.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 Utilities/bootstrap.sh
+if [ "${1-}" = --against ]; then
+  rm -rf build/against
+  mkdir -p build/against
+  git archive "$2" | tar -x -C build/against
+  for folder in build/against .; do
+    cmake -S "$folder" -B "$folder/build/times" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+      -DCARTAN_BUILD_PLUGIN=OFF -DCARTAN_WRAP_PYTHON=ON
+    for target in $(ninja -C "$folder/build/times" -t targets all |
+      sed -nE 's/^((vtk)?CartanPython): phony$/\1/p'); do
+      cmake --build "$folder/build/times" --target "$target" --parallel "$(nproc)"
+    done
+  done
+  exec Utilities/compare_times.py build/against/build/times build/times
+fi
 cmake -S . -B build/benchmarks -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCARTAN_BUILD_BENCHMARKS=ON -DCARTAN_BUILD_TESTING=OFF \
   -DCARTAN_BUILD_PLUGIN=OFF -DCARTAN_WRAP_PYTHON=OFF
