@@ -159,7 +159,7 @@ public:
    * How far points of the table may be from the solution, as a fraction of the bounding box's
    * diagonal. Default: 1e-5.
    */
-  vtkSetClampMacro(TurnTolerance, double, 1e-6, 0.1);
+  vtkSetClampMacro(TurnTolerance, double, 1e-6, 1.0);
   vtkGetMacro(TurnTolerance, double);
   ///@}
 

@@ -9,7 +9,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # Outputs, texts of PrintSelf, and what VTK has of its own.
 NOT_RESULTS = {"GetFormsTable", "GetChangeTable", "GetSpectrumTable", "GetErrorTable",
                "GetBitTable", "GetCorrespondences", "GetBase", "GetLandmarkTable",
-               "GetCarried",
+               "GetCarried", "GetVolumeMesh",
                "GetModeAsString", "GetRegionSourceAsString",
                "GetOrientation", "GetProblem", "GetMTime", "GetErrorCode"}
 
