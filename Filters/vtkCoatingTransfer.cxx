@@ -7,6 +7,8 @@
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfacePlaces.h"
 #include "Bridge/SurfaceWriter.h"
+#include "Kernel/Algebra/SimilarityFit.h"
+#include "Kernel/Merging/SmoothStep.h"
 #include "Kernel/Mesh/GeodesicDistance.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Mesh/UsedVertices.h"
@@ -16,9 +18,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-
-#include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -95,47 +94,6 @@ std::map<int, int> ReadKeyPoints(
   return points;
 }
 
-/// The similarity that takes the target's key points closest to the source's.
-Eigen::Matrix4d AlignKeys(const std::map<int, int>& targetKeys, const cartan::Points& target,
-  const std::map<int, int>& sourceKeys, const cartan::Points& source)
-{
-  std::vector<int> from;
-  std::vector<int> to;
-  for (const auto& [key, point] : targetKeys)
-  {
-    const auto partner = sourceKeys.find(key);
-    if (partner != sourceKeys.end())
-    {
-      from.push_back(point);
-      to.push_back(partner->second);
-    }
-  }
-  const Eigen::Matrix3Xd fromPoints = target(from, Eigen::all).transpose();
-  const Eigen::Matrix3Xd toPoints = source(to, Eigen::all).transpose();
-  bool isDetermined = from.size() >= 3;
-  if (isDetermined)
-  {
-    const Eigen::Matrix3Xd centered =
-      fromPoints.colwise() - Eigen::Vector3d(fromPoints.rowwise().mean());
-    const Eigen::Vector3d spread = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centered).singularValues();
-    isDetermined = spread[1] > RoundingPart * spread[0];
-  }
-  if (!isDetermined)
-  {
-    throw Error(ErrorCode::BadInput,
-      std::to_string(from.size()) +
-        " points have equal keys on both surfaces, which is too few, or they lie on a line: give "
-        "three points or more, not on one line, equal numbers from 1 on both.");
-  }
-  return Eigen::umeyama(fromPoints, toPoints, true);
-}
-
-cartan::Points Moved(const cartan::Points& points, const Eigen::Matrix4d& motion)
-{
-  return (points * motion.topLeftCorner<3, 3>().transpose()).rowwise() +
-    motion.topRightCorner<3, 1>().transpose();
-}
-
 /// Each point at the point of its id.
 cartan::FoundPlaces PlacesById(
   const cartan::TriangleMesh& target, const cartan::TriangleMesh& source)
@@ -154,6 +112,19 @@ cartan::FoundPlaces PlacesById(
     found.Places.push_back(cartan::SurfacePlace::AtVertex(v));
   }
   return found;
+}
+
+void RequireSameTriangles(
+  int correspondence, const cartan::TriangleMesh& target, const cartan::TriangleMesh& source)
+{
+  if (correspondence != vtkCoatingTransfer::POINT_ID ||
+    target.NumberOfTriangles() != source.NumberOfTriangles() ||
+    target.GetTriangles() != source.GetTriangles())
+  {
+    throw Error(ErrorCode::BadInput,
+      "LAPLACIANS belong to triangles: they need POINT_ID, and the source's triangles on the "
+      "target. Choose DISPLACEMENTS.");
+  }
 }
 
 /// Over the points that are in a triangle.
@@ -232,6 +203,7 @@ void vtkCoatingTransfer::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Correspondence: " << this->Correspondence << "\n";
+  os << indent << "Representation: " << this->Representation << "\n";
   os << indent << "Alignment: " << this->Alignment << "\n";
   os << indent << "Smoothing: " << this->Smoothing << "\n";
   os << indent << "Strength: " << this->Strength << "\n";
@@ -303,14 +275,14 @@ void vtkCoatingTransfer::FindPlaces(Sides& sides, cartan::FilterRun& run) const
     sides.Target->Positions->rowwise() + (sides.Target->Origin - sides.SourceOrigin).transpose();
   if (this->Correspondence == KEYS)
   {
-    target = Moved(target,
-      AlignKeys(ReadKeyPoints(sides.TargetData, mesh, this->KeyArrayName), target,
+    target = cartan::Moved(target,
+      cartan::AlignKeys(ReadKeyPoints(sides.TargetData, mesh, this->KeyArrayName), target,
         ReadKeyPoints(sides.SourceData, *sides.Mesh, this->KeyArrayName), sides.Base));
   }
   else if (this->Alignment != AS_THEY_LIE)
   {
     const std::vector<int> used = cartan::UsedVertices(mesh);
-    target = Moved(target,
+    target = cartan::Moved(target,
       cartan::AlignToSurface(
         target(used, Eigen::all), *sides.Mesh, sides.Base, this->Alignment == SIMILARITY));
   }
@@ -342,9 +314,7 @@ void vtkCoatingTransfer::FindStrengths(Sides& sides, cartan::FilterRun& run) con
       mesh, *sides.Target->Positions, outside, this->FadeWidth, run.Context().Part(0.85, 0.9));
     for (int v = 0; v < mesh.NumberOfVertices(); ++v)
     {
-      // Smooth at both ends: 3 t^2 - 2 t^3.
-      const double t = std::min(1.0, distances[v] / this->FadeWidth);
-      strengths[v] *= t * t * (3.0 - 2.0 * t);
+      strengths[v] *= cartan::SmoothStep(distances[v] / this->FadeWidth);
     }
   }
 }
@@ -374,10 +344,16 @@ void vtkCoatingTransfer::Execute(cartan::FilterRun& run)
   const cartan::TriangleMesh& mesh = *sides.Target->Mesh;
   const cartan::Points& rest = *sides.Target->Positions;
   const cartan::PlaceFrames frames =
-    cartan::FramesAtPlaces(mesh, rest, sides.Base, sides.Found.Places, context.Part(0.9, 0.95));
+    cartan::FramesAtPlaces(mesh, rest, sides.Base, sides.Found.Places, context.Part(0.9, 0.93));
   const std::vector<int> used = cartan::UsedVertices(mesh);
-  const cartan::Points all = cartan::CoatingDisplacements(
+  cartan::Points all = cartan::CoatingDisplacements(
     sides.Base, *sides.Detailed, sides.Found.Places, frames, this->ScaleDetails, sides.Strengths);
+  if (this->Representation == LAPLACIANS)
+  {
+    RequireSameTriangles(this->Correspondence, mesh, *sides.Mesh);
+    all = cartan::CoatingByLaplacians(mesh, sides.Base, *sides.Detailed, frames, this->ScaleDetails,
+      sides.Strengths, all, context.Part(0.93, 0.95));
+  }
   cartan::Points displacements = cartan::Points::Zero(mesh.NumberOfVertices(), 3);
   Eigen::VectorXd distances = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
   for (const int v : used)

@@ -20,7 +20,8 @@
  *
  * Output 1: the smooth base that was used, with the source's points, cells and arrays.
  *
- * Errors, each with an empty output: POINT_ID with different numbers of points; KEYS with
+ * Errors, each with an empty output: POINT_ID with different numbers of points; LAPLACIANS
+ * without POINT_ID or with other triangles; KEYS with
  * fewer than three points of equal keys, or all on one line; missing texture coordinates; a smooth
  * source of other cells; a region array that is missing; see vtkSurfaceFilter. A warning tells when
  * the source has no detail, and when places are farther than a tenth of the source's size on
@@ -102,6 +103,25 @@ public:
   void SetAlignmentToAsTheyLie() { this->SetAlignment(AS_THEY_LIE); }
   void SetAlignmentToRigid() { this->SetAlignment(RIGID); }
   void SetAlignmentToSimilarity() { this->SetAlignment(SIMILARITY); }
+  ///@}
+
+  enum RepresentationType
+  {
+    DISPLACEMENTS = 0,
+    LAPLACIANS = 1
+  };
+
+  ///@{
+  /**
+   * What of the coating is turned and carried over. DISPLACEMENTS: how far each point is off
+   * the base. LAPLACIANS: its Laplacian coordinates, as the references have it, from which the
+   * surface is reconstructed; it needs POINT_ID and the source's triangles on the target.
+   * Default: DISPLACEMENTS.
+   */
+  vtkSetClampMacro(Representation, int, DISPLACEMENTS, LAPLACIANS);
+  vtkGetMacro(Representation, int);
+  void SetRepresentationToDisplacements() { this->SetRepresentation(DISPLACEMENTS); }
+  void SetRepresentationToLaplacians() { this->SetRepresentation(LAPLACIANS); }
   ///@}
 
   ///@{
@@ -199,6 +219,7 @@ private:
   std::string RegionArrayName;
   std::string KeyArrayName = "CorrespondenceKey";
   int Correspondence = CLOSEST_POINT;
+  int Representation = DISPLACEMENTS;
   int Alignment = SIMILARITY;
   double Smoothing = 10.0;
   double Strength = 1.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Bridge/SuspectAlignment.h"
 
+#include "Kernel/Algebra/SimilarityFit.h"
 #include "Kernel/Mesh/UsedVertices.h"
 
 #include "vtkCellArray.h"
@@ -25,7 +26,7 @@ using Similarity = Eigen::Affine3d; // maps the suspect on the original
 /// The similarity that best maps the rows of `from` on those of `to`.
 Similarity BestSimilarity(const Points& from, const Points& to)
 {
-  return Similarity(Eigen::umeyama(from.transpose(), to.transpose(), true));
+  return Similarity(FitSimilarity(from, to));
 }
 
 Points Move(const Similarity& motion, const Points& points)

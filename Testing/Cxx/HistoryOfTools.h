@@ -346,6 +346,7 @@ inline Subject Coating()
     { InputChoice(0), InputChoice(1),
       Of<Filter>(3, [](Filter* f, int value) { f->SetCorrespondence(value == 1 ? 2 : value); }),
       Enumeration<Filter>(3, &Filter::SetAlignment),
+      Enumeration<Filter>(2, &Filter::SetRepresentation),
       Number<Filter>(&Filter::SetSmoothing, { 5.0, 1.0 }),
       Number<Filter>(&Filter::SetStrength, { 1.0, -0.5 }), Switch<Filter>(&Filter::SetScaleDetails),
       Name<Filter>(&Filter::SetRegionArrayName, { "", "Handle" }),

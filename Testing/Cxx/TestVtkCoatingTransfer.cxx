@@ -94,6 +94,48 @@ TEST_F(CoatingTransfer, FollowsSimilaritiesOfTheBaseExactly)
   EXPECT_LT((this->Result() - inwards).rowwise().norm().maxCoeff(), 1e-12);
 }
 
+TEST_F(CoatingTransfer, CarriesLaplaciansOfTheBase)
+{
+  const shapes::Shape base = shapes::Icosphere(3);
+  const shapes::Shape source = WithRelief(base);
+  const shapes::RigidMotion motion = shapes::RandomRigidMotion(4, 3.0);
+  this->Connect(motion(base), source, base);
+  this->Filter->SetCorrespondenceToPointId();
+  this->Filter->SetRepresentationToLaplacians();
+  const double distance = (this->Result() - motion(source.Positions)).rowwise().norm().maxCoeff();
+  ExpectQuiet(*this->Log);
+  shapes::ShowFigure("error in parts of the coating", distance / this->Filter->GetCoatingRMS());
+  EXPECT_LT(distance, 1e-8 * this->Filter->GetCoatingRMS());
+
+  // Half of a coating is half of its Laplacian coordinates, on a base that is bent, too.
+  shapes::Shape bent = base;
+  for (int v = 0; v < bent.NumberOfVertices(); ++v)
+  {
+    const double z = bent.Positions(v, 2);
+    bent.Positions(v, 0) += 0.3 * z * z;
+  }
+  this->Connect(bent, source, base);
+  const cartan::Points whole = this->Result() - bent.Positions;
+  EXPECT_GT(whole.norm(), 0.5 * (source.Positions - base.Positions).norm());
+  EXPECT_LT(whole.norm(), 1.5 * (source.Positions - base.Positions).norm());
+  this->Filter->SetStrength(0.5);
+  EXPECT_LT((this->Result() - bent.Positions - 0.5 * whole).norm(), 1e-9 * whole.norm());
+}
+
+TEST_F(CoatingTransfer, LaplaciansNeedTheSameTriangles)
+{
+  const shapes::Shape base = shapes::Icosphere(2);
+  this->Connect(base, WithRelief(base), base);
+  this->Filter->SetRepresentationToLaplacians();
+  this->ExpectError({ "need POINT_ID", Advice("Choose DISPLACEMENTS.") });
+  this->Filter->SetCorrespondenceToPointId();
+  EXPECT_GT(this->Result().rows(), 0);
+  this->Connect(shapes::Inverted(base), WithRelief(base), base);
+  this->ExpectError({ "the source's triangles on the target" });
+  this->Filter->SetRepresentationToDisplacements();
+  EXPECT_GT(this->Result().rows(), 0);
+}
+
 TEST_F(CoatingTransfer, ReachesOtherConnectivities)
 {
   const shapes::Shape base = shapes::Icosphere(4); // 2562 points

@@ -2,7 +2,9 @@
 #include "Merging/CoatingTransfer.h"
 
 #include "Algebra/AnchoredSystem.h"
+#include "Algebra/SimilarityFit.h"
 #include "Base/Constants.h"
+#include "Base/Error.h"
 #include "Differential/LaplaceOperator.h"
 #include "Differential/RotationFit.h"
 #include "Mesh/Geometry.h"
@@ -100,6 +102,70 @@ Points CoatingDisplacements(const Points& base, const Points& detailed,
     const double factor = strengths[v] * (scales ? frames.Scales[v] : 1.0);
     const Eigen::Vector3d turned = MatrixAt(frames.Rotations, v) * displacements.row(v).transpose();
     displacements.row(v) = factor * turned.transpose();
+  }
+  return displacements;
+}
+
+Eigen::Matrix4d AlignKeys(const std::map<int, int>& targetKeys, const Points& target,
+  const std::map<int, int>& sourceKeys, const Points& source)
+{
+  std::vector<int> from;
+  std::vector<int> to;
+  for (const auto& [key, point] : targetKeys)
+  {
+    const auto partner = sourceKeys.find(key);
+    if (partner != sourceKeys.end())
+    {
+      from.push_back(point);
+      to.push_back(partner->second);
+    }
+  }
+  const Points fromPoints = target(from, Eigen::all);
+  if (!SpanPlane(fromPoints))
+  {
+    throw Error(ErrorCode::BadInput,
+      std::to_string(from.size()) +
+        " points have equal keys on both surfaces, which is too few, or they lie on a line: give "
+        "three points or more, not on one line, equal numbers from 1 on both.");
+  }
+  return FitSimilarity(fromPoints, source(to, Eigen::all));
+}
+
+Points CoatingByLaplacians(const TriangleMesh& mesh, const Points& base, const Points& detailed,
+  const PlaceFrames& frames, bool scales, const Eigen::VectorXd& strengths, const Points& guess,
+  const ExecutionContext& context)
+{
+  const LaplaceOperator laplace(mesh, base, LaplacianWeights::Cotangent, context);
+  const SparseMatrix matrix = Laplacian(mesh, laplace.GetWeights());
+  Points turned = ApplyLaplacian(matrix, detailed - base);
+  Points means = Points::Zero(mesh.NumberOfComponents(), 3);
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(mesh.NumberOfComponents());
+  const std::vector<int> used = UsedVertices(mesh);
+  for (const int v : used)
+  {
+    const double factor = strengths[v] * (scales ? frames.Scales[v] : 1.0);
+    const Eigen::Vector3d u = MatrixAt(frames.Rotations, v) * turned.row(v).transpose();
+    turned.row(v) = factor * u.transpose();
+    means.row(mesh.Component(v)) += turned.row(v);
+    ++counts[mesh.Component(v)];
+  }
+  // L u sums to zero, and what differs after turning is spread over all vertices.
+  for (const int v : used)
+  {
+    turned.row(v) -= means.row(mesh.Component(v)) / counts[mesh.Component(v)];
+  }
+  AnchoredSystem system;
+  system.Factorize(matrix, Anchors::Hard(mesh.Grounded()), context);
+  Field displacements = Field::Zero(mesh.NumberOfVertices(), 3);
+  system.Solve(turned, displacements);
+  Points shifts = Points::Zero(mesh.NumberOfComponents(), 3);
+  for (const int v : used)
+  {
+    shifts.row(mesh.Component(v)) += guess.row(v) - displacements.row(v);
+  }
+  for (const int v : used)
+  {
+    displacements.row(v) += shifts.row(mesh.Component(v)) / counts[mesh.Component(v)];
   }
   return displacements;
 }

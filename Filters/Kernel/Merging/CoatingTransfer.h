@@ -5,6 +5,7 @@
 #include "Merging/SurfacePlace.h"
 #include "Mesh/TriangleMesh.h"
 
+#include <map>
 #include <vector>
 
 namespace cartan
@@ -18,6 +19,12 @@ namespace cartan
 /// not shrink). width >= 0; 0 returns the points.
 Points SmoothBase(const TriangleMesh& mesh, const Points& points, double width,
   const ExecutionContext& context = {});
+
+/// The similarity (4 x 4) that takes the target's key points closest to the source's; keys
+/// are vertices by number, those of one surface only do not count. Throws Error(BadInput) where
+/// equal keys determine none.
+Eigen::Matrix4d AlignKeys(const std::map<int, int>& targetKeys, const Points& target,
+  const std::map<int, int>& sourceKeys, const Points& source);
 
 /// How the neighborhood of each target vertex lies to that of its place on the source:
 /// the rotation that takes the places of its one-ring, with their normal, closest to the
@@ -47,4 +54,16 @@ PlaceFrames FramesAtPlaces(const TriangleMesh& target, const Points& targetPoint
 Points CoatingDisplacements(const Points& base, const Points& detailed,
   const std::vector<SurfacePlace>& places, const PlaceFrames& frames, bool scales,
   const Eigen::VectorXd& strengths);
+
+/// The same by Laplacian coordinates, as the references have it, for a target with the
+/// base's triangles: displacements u with
+///
+///   L u = strength_i s_i R_i L (v - b), L the base's,
+///
+/// which on closed surfaces and free boundaries determines them up to a shift of each component:
+/// that with the mean of `guess`, which are those of CoatingDisplacements. Where the base was
+/// moved rigidly, the coating comes out whole.
+Points CoatingByLaplacians(const TriangleMesh& mesh, const Points& base, const Points& detailed,
+  const PlaceFrames& frames, bool scales, const Eigen::VectorXd& strengths, const Points& guess,
+  const ExecutionContext& context = {});
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Merging/LoopPairing.h"
 
+#include "Algebra/SimilarityFit.h"
 #include "Base/Error.h"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -161,10 +160,9 @@ PairedLoops PairByKeys(const std::vector<BoundaryLoop>& targets,
 
 /// Two points for each loop that say where it is, how it lies and how large it is: the
 /// center and, on both sides of its plane, the root of its area away.
-Eigen::Matrix3Xd LoopMarks(
-  const std::vector<BoundaryLoop>& loops, const Points& points, double direction)
+Points LoopMarks(const std::vector<BoundaryLoop>& loops, const Points& points, double direction)
 {
-  Eigen::Matrix3Xd marks(3, 2 * static_cast<Eigen::Index>(loops.size()));
+  Points marks(2 * static_cast<Eigen::Index>(loops.size()), 3);
   for (std::size_t i = 0; i < loops.size(); ++i)
   {
     const LoopMeasures measures = MeasureLoop(points(loops[i].Vertices, Eigen::all));
@@ -172,36 +170,31 @@ Eigen::Matrix3Xd LoopMarks(
     const Eigen::Vector3d offset = area > 0.0
       ? Eigen::Vector3d(direction / std::sqrt(area) * measures.AreaVector)
       : Eigen::Vector3d(Eigen::Vector3d::Zero());
-    const auto column = 2 * static_cast<Eigen::Index>(i);
-    marks.col(column) = measures.Center + offset;
-    marks.col(column + 1) = measures.Center - offset;
+    const auto row = 2 * static_cast<Eigen::Index>(i);
+    marks.row(row) = (measures.Center + offset).transpose();
+    marks.row(row + 1) = (measures.Center - offset).transpose();
   }
   return marks;
 }
 
 /// The target's loop for each of the source's, so that their marks are closest.
-std::vector<int> ClosestPairing(
-  const Eigen::Matrix3Xd& target, const Eigen::Matrix3Xd& source, LoopAlignment alignment)
+std::vector<int> ClosestPairing(const Points& target, const Points& source, LoopAlignment alignment)
 {
-  std::vector<int> order(target.cols() / 2);
+  std::vector<int> order(target.rows() / 2);
   std::iota(order.begin(), order.end(), 0);
   std::vector<int> best = order;
   double bestDistance = std::numeric_limits<double>::infinity();
   do
   {
-    Eigen::Matrix3Xd there(3, target.cols());
+    Points there(target.rows(), 3);
     for (std::size_t i = 0; i < order.size(); ++i)
     {
-      const auto column = 2 * static_cast<Eigen::Index>(i);
-      there.middleCols<2>(column) = target.middleCols<2>(2 * order[i]);
+      const auto row = 2 * static_cast<Eigen::Index>(i);
+      there.middleRows<2>(row) = target.middleRows<2>(2 * order[i]);
     }
-    Eigen::Matrix3Xd moved = source;
-    if (alignment == LoopAlignment::BySimilarity)
-    {
-      const Eigen::Matrix4d similarity = Eigen::umeyama(source, there, true);
-      moved =
-        (similarity.topLeftCorner<3, 3>() * source).colwise() + similarity.topRightCorner<3, 1>();
-    }
+    const Points moved = alignment == LoopAlignment::BySimilarity
+      ? Moved(source, FitSimilarity(source, there))
+      : source;
     const double distance = (moved - there).squaredNorm();
     // Beyond rounding, so that the first of equally good ways is taken.
     if (distance < bestDistance * (1.0 - 1e-9))
