@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMeshMerge.h"
 
+#include "Bridge/CorrespondenceWriter.h"
 #include "Bridge/FilterRun.h"
 #include "Bridge/HandleArrays.h"
 #include "Bridge/MergedSurfaceWriter.h"
+#include "Bridge/MotionTable.h"
 #include "Bridge/PointArrays.h"
 #include "Kernel/Base/Constants.h"
 #include "Kernel/Merging/LoopPairing.h"
@@ -11,15 +13,11 @@
 #include "Kernel/Merging/Transition.h"
 #include "Kernel/Mesh/GeodesicDistance.h"
 #include "Kernel/Mesh/GrowByRings.h"
+#include "vtkHandleMotion.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkIntArray.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
@@ -28,6 +26,19 @@ vtkStandardNewMacro(vtkMeshMerge);
 
 using cartan::Error;
 using cartan::ErrorCode;
+
+class vtkMeshMerge::Internals
+{
+public:
+  cartan::MotionTable Motions;
+};
+
+/// What holds the source's points.
+struct vtkMeshMerge::Holds
+{
+  std::vector<cartan::SourceHold> Of; ///< empty or #V
+  cartan::HandleTargets Moved;        ///< of those that are Moved
+};
 
 /// Both inputs as the kernel sees them.
 struct vtkMeshMerge::Sides
@@ -73,83 +84,16 @@ std::vector<int> ReadKeys(
   return keys;
 }
 
-/// A line of points with its pair and kind.
-class LineWriter
-{
-public:
-  explicit LineWriter(vtkPolyData* output)
-    : Output(output)
-  {
-    this->Pairs->SetName("Pair");
-    this->Kinds->SetName("Kind");
-  }
-
-  void Add(const cartan::Points& points, bool isClosed, int pair, int kind)
-  {
-    this->Lines->InsertNextCell(static_cast<int>(points.rows()) + isClosed);
-    vtkIdType first = -1;
-    for (Eigen::Index i = 0; i < points.rows(); ++i)
-    {
-      const vtkIdType id = this->Coordinates->InsertNextPoint(points.row(i).data());
-      first = i == 0 ? id : first;
-      this->Lines->InsertCellPoint(id);
-    }
-    if (isClosed)
-    {
-      this->Lines->InsertCellPoint(first);
-    }
-    this->Pairs->InsertNextValue(pair);
-    this->Kinds->InsertNextValue(kind);
-  }
-
-  void Finish()
-  {
-    this->Output->SetPoints(this->Coordinates);
-    this->Output->SetLines(this->Lines);
-    this->Output->GetCellData()->AddArray(this->Pairs);
-    this->Output->GetCellData()->AddArray(this->Kinds);
-  }
-
-private:
-  vtkPolyData* Output;
-  vtkNew<vtkPoints> Coordinates;
-  vtkNew<vtkCellArray> Lines;
-  vtkNew<vtkIntArray> Pairs;
-  vtkNew<vtkIntArray> Kinds;
-};
-
-/// Loops, lines from the points of the source's to their places, and those of keys.
-void WriteCorrespondences(const cartan::PairedLoops& paired, const cartan::FittedSource& fitted,
-  const cartan::Points& targetPoints, const cartan::Points& sourcePoints, vtkPolyData* output)
-{
-  LineWriter lines(output);
-  for (std::size_t p = 0; p < fitted.Loops.size(); ++p)
-  {
-    const cartan::SeamLoop& loop = fitted.Loops[p];
-    const int pair = static_cast<int>(p) + 1;
-    const cartan::Points target = targetPoints(loop.Target, Eigen::all);
-    const cartan::Points source = sourcePoints(loop.Source, Eigen::all);
-    lines.Add(target, true, pair, 0);
-    lines.Add(source, true, pair, 1);
-    for (Eigen::Index i = 0; i < source.rows(); ++i)
-    {
-      const bool isKey = paired.GivenKeys[p] > 0 &&
-        std::any_of(paired.Keys[p].begin(), paired.Keys[p].end(),
-          [i](const cartan::LoopKey& key) { return key.Source == i; });
-      cartan::Points ends(2, 3);
-      ends << source.row(i), cartan::PointAt(target, loop.Places[i]);
-      lines.Add(ends, false, pair, isKey ? 3 : 2);
-    }
-  }
-  lines.Finish();
-}
 }
 
 vtkMeshMerge::vtkMeshMerge()
+  : State(std::make_unique<Internals>())
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
 }
+
+vtkMeshMerge::~vtkMeshMerge() = default;
 
 void vtkMeshMerge::SetSourceData(vtkPolyData* source)
 {
@@ -170,10 +114,92 @@ void vtkMeshMerge::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SeamFairing: " << this->SeamFairing << "\n";
   os << indent << "BoundaryKeyArrayName: " << this->BoundaryKeyArrayName << "\n";
   os << indent << "HandleArrayName: " << this->HandleArrayName << "\n";
+  os << indent << "FeatureArrayName: " << this->FeatureArrayName << "\n";
+  os << indent << "Motions: " << this->State->Motions.ById.size() << "\n";
+  os << indent << "MotionRows: " << this->State->Motions.Rows.size() << "\n";
   os << indent << "NumberOfPairs: " << this->NumberOfPairs << "\n";
   os << indent << "SeamAngleMean: " << this->SeamAngleMean << "\n";
   os << indent << "SeamAngleMaximum: " << this->SeamAngleMaximum << "\n";
   os << indent << "NumberOfFactorizations: " << this->NumberOfFactorizations << "\n";
+}
+
+void vtkMeshMerge::SetHandleMotion(int id, vtkHandleMotion* motion)
+{
+  if (id < 1)
+  {
+    vtkErrorMacro("Handle ids are >= 1; got " << id << ".");
+    return;
+  }
+  auto& motions = this->State->Motions.ById;
+  if (this->GetHandleMotion(id) != motion)
+  {
+    motion ? void(motions[id] = motion) : void(motions.erase(id));
+    this->Modified();
+  }
+}
+
+vtkHandleMotion* vtkMeshMerge::GetHandleMotion(int id) const
+{
+  const auto found = this->State->Motions.ById.find(id);
+  return found == this->State->Motions.ById.end() ? nullptr : found->second.Get();
+}
+
+void vtkMeshMerge::RemoveAllHandleMotions()
+{
+  if (!this->State->Motions.ById.empty())
+  {
+    this->State->Motions.ById.clear();
+    this->Modified();
+  }
+}
+
+void vtkMeshMerge::SetNumberOfMotionRows(int count)
+{
+  if (count < 0 || count > cartan::MotionTable::MaximumNumberOfRows)
+  {
+    vtkErrorMacro("The motions' table has 0 to " << cartan::MotionTable::MaximumNumberOfRows
+                                                 << " rows; got " << count << ".");
+    return;
+  }
+  if (count != this->GetNumberOfMotionRows())
+  {
+    this->State->Motions.ResizeRows(count);
+    this->Modified();
+  }
+}
+
+int vtkMeshMerge::GetNumberOfMotionRows() const
+{
+  return static_cast<int>(this->State->Motions.Rows.size());
+}
+
+void vtkMeshMerge::SetMotionRow(int row, double id, double scaleX, double scaleY, double scaleZ,
+  double angle, double axisX, double axisY, double axisZ, double centerX, double centerY,
+  double centerZ, double translationX, double translationY, double translationZ)
+{
+  if (row < 0 || row >= cartan::MotionTable::MaximumNumberOfRows)
+  {
+    vtkErrorMacro("Rows are numbered from 0 to " << cartan::MotionTable::MaximumNumberOfRows - 1
+                                                 << "; got " << row << ".");
+    return;
+  }
+  this->SetNumberOfMotionRows(std::max(row + 1, this->GetNumberOfMotionRows()));
+  cartan::MotionTable::Row& target = this->State->Motions.Rows[row];
+  if (target.Id != id)
+  {
+    target.Id = id;
+    this->Modified();
+  }
+  target.Motion->SetScale(scaleX, scaleY, scaleZ);
+  target.Motion->SetAngle(angle);
+  target.Motion->SetAxis(axisX, axisY, axisZ);
+  target.Motion->SetCenter(centerX, centerY, centerZ);
+  target.Motion->SetTranslation(translationX, translationY, translationZ);
+}
+
+vtkMTimeType vtkMeshMerge::GetMTime()
+{
+  return std::max(this->Superclass::GetMTime(), this->State->Motions.GetMTime());
 }
 
 void vtkMeshMerge::ForgetResults()
@@ -204,77 +230,165 @@ vtkMeshMerge::Sides vtkMeshMerge::ReadSides(cartan::FilterRun& run) const
   return sides;
 }
 
-std::vector<char> vtkMeshMerge::HeldPoints(
-  const Sides& sides, const std::vector<std::vector<int>>& loops, cartan::FilterRun& run) const
+void vtkMeshMerge::HoldHandles(const Sides& sides, Holds& holds) const
 {
-  std::vector<char> held;
+  const cartan::MotionsById motions = this->State->Motions.Collect(0);
+  if (!sides.SourceData->GetPointData()->GetArray(this->HandleArrayName.c_str()) && motions.empty())
+  {
+    return;
+  }
+  const cartan::Handles handles =
+    cartan::ReadHandles(sides.SourceData, *sides.SourceSurface->Mesh, this->HandleArrayName);
+  cartan::RequireMeaningfulMotions(motions, handles);
+  for (const int v : handles.Points)
+  {
+    holds.Of[v] =
+      motions.count(handles.OfVertex[v]) ? cartan::SourceHold::Moved : cartan::SourceHold::Kept;
+  }
+  std::vector<int> moving;
+  for (const auto& entry : motions)
+  {
+    moving.push_back(entry.first);
+  }
+  cartan::Surface source = *sides.SourceSurface;
+  source.Positions = sides.Source.Surface.Positions;
+  source.Origin = sides.SourceOffset;
+  holds.Moved = cartan::MotionTargets(*source.Positions, handles.OfVertex, moving,
+    cartan::MakeTargets(source, moving, motions, handles, {}).Motions);
+}
+
+vtkMeshMerge::Holds vtkMeshMerge::FindHolds(
+  const Sides& sides, const std::vector<cartan::LoopPair>& pairs, cartan::FilterRun& run) const
+{
+  Holds holds;
+  const cartan::TriangleMesh& mesh = *sides.Source.Surface.Mesh;
   if (this->Configuration == INDEPENDENT)
   {
-    return held;
-  }
-  const cartan::TriangleMesh& mesh = *sides.Source.Surface.Mesh;
-  held.assign(mesh.NumberOfVertices(), 0);
-  if (sides.SourceData->GetPointData()->GetArray(this->HandleArrayName.c_str()))
-  {
-    for (const int v : cartan::ReadHandles(sides.SourceData, mesh, this->HandleArrayName).Points)
+    if (!this->State->Motions.Collect(0).empty())
     {
-      held[v] = 1;
+      throw Error(ErrorCode::BadInput,
+        "Handles have motions, but the source's place does not count: choose DEPENDENT, or remove "
+        "the motions.");
     }
+    return holds;
   }
+  holds.Of.resize(mesh.NumberOfVertices());
+  this->HoldHandles(sides, holds);
   if (this->BendWidth > 0.0)
   {
     std::vector<int> seam;
-    for (const std::vector<int>& loop : loops)
+    for (const cartan::LoopPair& pair : pairs)
     {
-      seam.insert(seam.end(), loop.begin(), loop.end());
+      seam.insert(seam.end(), pair.Source.begin(), pair.Source.end());
     }
     const Eigen::VectorXd distances = cartan::GeodesicDistance(
       mesh, *sides.Source.Surface.Positions, seam, this->BendWidth, run.Context().Part(0.2, 0.25));
     for (int v = 0; v < mesh.NumberOfVertices(); ++v)
     {
-      held[v] |= mesh.IsUsed(v) && !(distances[v] <= this->BendWidth);
+      if (mesh.IsUsed(v) && !(distances[v] <= this->BendWidth) &&
+        holds.Of[v] == cartan::SourceHold::Free)
+      {
+        holds.Of[v] = cartan::SourceHold::Kept;
+      }
     }
   }
-  if (std::find(held.begin(), held.end(), 1) == held.end())
+  if (std::all_of(holds.Of.begin(), holds.Of.end(),
+        [](cartan::SourceHold hold) { return hold == cartan::SourceHold::Free; }))
   {
     throw Error(ErrorCode::BadInput,
       "Nothing of the source is held, so its place cannot count: mark handles on it (Mark "
       "Handle), set a BendWidth smaller than the source, or choose INDEPENDENT.");
   }
-  return held;
+  return holds;
 }
 
-vtkMeshMerge::Sewn vtkMeshMerge::Sew(
-  const Sides& sides, const cartan::PairedLoops& paired, cartan::FilterRun& run)
+std::vector<int> vtkMeshMerge::ReadFeatures(const Sides& sides, const Holds& holds) const
+{
+  std::vector<int> features;
+  if (!sides.SourceData->GetPointData()->GetArray(this->FeatureArrayName.c_str()))
+  {
+    return features;
+  }
+  features =
+    cartan::ReadHandles(sides.SourceData, *sides.SourceSurface->Mesh, this->FeatureArrayName)
+      .OfVertex;
+  cartan::IdSample both;
+  for (std::size_t v = 0; v < holds.Of.size(); ++v)
+  {
+    if (features[v] > 0 && holds.Of[v] != cartan::SourceHold::Free)
+    {
+      both.Add(static_cast<long long>(v));
+    }
+  }
+  if (!both.IsEmpty())
+  {
+    throw Error(ErrorCode::BadInput,
+      both.Describe("point", "points") +
+        " of the source are held and in a feature, which finds its own place: unmark them as one "
+        "of both.");
+  }
+  const bool isAny =
+    std::any_of(features.begin(), features.end(), [](int feature) { return feature > 0; });
+  return isAny ? features : std::vector<int>{};
+}
+
+cartan::FittedSource vtkMeshMerge::Fit(const Sides& sides, const cartan::MergeInput& target,
+  const std::vector<cartan::LoopPair>& pairs, const std::vector<std::vector<cartan::LoopKey>>& keys,
+  Holds& holds, cartan::FilterRun& run)
 {
   const cartan::ExecutionContext& context = run.Context();
   std::vector<std::vector<int>> loops;
   cartan::ContentKey key = sides.SourceSurface->Key;
   key.Add(static_cast<std::uint64_t>(this->Configuration));
   key.AddBytes(sides.SourceOffset.data(), 3 * sizeof(double));
-  for (const cartan::LoopPair& pair : paired.Pairs)
+  for (const cartan::LoopPair& pair : pairs)
   {
     loops.push_back(pair.Source);
     key.Add(static_cast<std::uint64_t>(pair.Source.size()));
     key.AddBytes(pair.Source.data(), pair.Source.size() * sizeof(int));
   }
-  const std::vector<char> held = this->HeldPoints(sides, loops, run);
-  key.AddBytes(held.data(), held.size());
-  const auto merge = run.Keep<cartan::MeshMerge>(key,
-    [&]
-    {
-      return std::make_unique<cartan::MeshMerge>(sides.Source.Surface, loops, held,
-        cartan::SolverBackend::Automatic, context.Part(0.25, 0.75));
-    });
-  this->NumberOfFactorizations = merge->GetNumberOfFactorizations();
+  const auto fit = [&](double from, double to)
+  {
+    cartan::ContentKey held = key;
+    held.AddBytes(holds.Of.data(), holds.Of.size());
+    const auto merge = run.Keep<cartan::MeshMerge>(held,
+      [&]
+      {
+        return std::make_unique<cartan::MeshMerge>(sides.Source.Surface, loops, holds.Of,
+          cartan::SolverBackend::Automatic, context.Part(from, from + 0.9 * (to - from)));
+      });
+    this->NumberOfFactorizations += merge->GetNumberOfFactorizations();
+    return merge->Fit(target, pairs, keys, holds.Moved, context.Part(from + 0.9 * (to - from), to));
+  };
+  const std::vector<int> features = this->ReadFeatures(sides, holds);
+  if (features.empty())
+  {
+    return fit(0.3, 0.85);
+  }
+  const cartan::Points& rest = *sides.Source.Surface.Positions;
+  const cartan::HandleTargets targets =
+    cartan::FeatureTargets(rest, fit(0.3, 0.55).Positions, features);
+  holds.Of.resize(features.size());
+  for (const int v : targets.Vertices)
+  {
+    holds.Of[v] = cartan::SourceHold::Moved;
+  }
+  cartan::AddTargets(targets, holds.Moved);
+  return fit(0.55, 0.85);
+}
 
+vtkMeshMerge::Sewn vtkMeshMerge::Sew(
+  const Sides& sides, const cartan::PairedLoops& paired, cartan::FilterRun& run)
+{
+  const cartan::ExecutionContext& context = run.Context();
+  Holds holds = this->FindHolds(sides, paired.Pairs, run);
   Sewn sewn;
   const cartan::TriangleMesh& source = *sides.SourceSurface->Mesh;
   const auto join = [&](const cartan::MergeInput& target,
                       const std::vector<cartan::LoopPair>& pairs,
                       const std::vector<std::vector<cartan::LoopKey>>& keys)
   {
-    sewn.Fit = merge->Fit(target, pairs, keys, context.Part(0.8, 0.85));
+    sewn.Fit = this->Fit(sides, target, pairs, keys, holds, run);
     run.Warn(sewn.Fit.Warning);
     sewn.Joined = cartan::JoinSurfaces(*target.Mesh, source, sewn.Fit.Loops);
     sewn.Positions = cartan::JoinedPositions(sewn.Joined, *target.Positions, sewn.Fit.Positions);
@@ -287,11 +401,11 @@ vtkMeshMerge::Sewn vtkMeshMerge::Sew(
     return sewn;
   }
   const cartan::Transition transition(
-    sides.Target.Surface, paired.Pairs, this->TransitionWidth, context.Part(0.75, 0.8));
+    sides.Target.Surface, paired.Pairs, this->TransitionWidth, context.Part(0.25, 0.3));
   const cartan::CutSurface& cut = transition.GetCut();
   join({ cut.Mesh, cut.Positions }, transition.GetPairs(), transition.MoveKeys(paired.Keys));
   sewn.Fading = transition.Fade(
-    source, sewn.Fit, held, sewn.Joined, sewn.Mesh, sewn.Positions, context.Part(0.85, 0.9));
+    source, sewn.Fit, holds.Of, sewn.Joined, sewn.Mesh, sewn.Positions, context.Part(0.85, 0.9));
   cartan::NameWholeFaces(cut, sewn.Joined);
   return sewn;
 }
@@ -312,7 +426,7 @@ void vtkMeshMerge::WriteOutputs(
     sewn.TargetPoints->rowwise() + sides.TargetSurface->Origin.transpose();
   const cartan::Points source =
     sides.Source.Surface.Positions->rowwise() + sides.SourceOffset.transpose();
-  WriteCorrespondences(paired, sewn.Fit, target, source, run.Output(1));
+  cartan::WriteCorrespondences(paired, sewn.Fit, target, source, run.Output(1));
 }
 
 void vtkMeshMerge::Execute(cartan::FilterRun& run)

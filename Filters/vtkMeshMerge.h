@@ -37,7 +37,9 @@
  * boundary, on one input only, twice on one, join a loop to several or cross; different numbers
  * of loops without keys; a part of the source that is neither sewn on nor held; boundaries
  * without a direction; a transition wider than the surface, or with held points; a seam that would
- * be no manifold; DEPENDENT with nothing held; see vtkSurfaceFilter.
+ * be no manifold; DEPENDENT with nothing held; motions without
+ * DEPENDENT or of handles without points; features on one line, or with held points; see
+ * vtkSurfaceFilter.
  *
  * Reference: Fu, Au, Tai, Effective Derivation of Similarity Transformations for Implicit
  * Laplacian Mesh Editing, Computer Graphics Forum 26(1), 2007, section 5.
@@ -49,12 +51,19 @@
 
 #include "vtkSurfaceFilter.h"
 
+#include <memory> // For the motions
 #include <string> // For array names
+#include <vector> // For loops
 
 namespace cartan
 {
+struct FittedSource;
+struct LoopKey;
+struct LoopPair;
+struct MergeInput;
 struct PairedLoops;
 }
+class vtkHandleMotion;
 
 class VTKCARTAN_EXPORT vtkMeshMerge : public vtkSurfaceFilter
 {
@@ -136,12 +145,50 @@ public:
 
   ///@{
   /**
-   * The source's point array whose points other than 0 are held with DEPENDENT. Default:
-   * "Handle".
+   * The source's point array whose points other than 0 are held with DEPENDENT: they keep
+   * their place, or go with the motion of their handle. Default: "Handle".
    */
   void SetHandleArrayName(const std::string& name) { this->SetMember(this->HandleArrayName, name); }
   std::string GetHandleArrayName() const { return this->HandleArrayName; }
   ///@}
+
+  ///@{
+  /**
+   * The source's point array of fixed features: points with equal numbers >= 1 move as one
+   * similarity, that which takes them closest to where they would come without. With both
+   * configurations. Default: "Feature".
+   */
+  void SetFeatureArrayName(const std::string& name)
+  {
+    this->SetMember(this->FeatureArrayName, name);
+  }
+  std::string GetFeatureArrayName() const { return this->FeatureArrayName; }
+  ///@}
+
+  ///@{
+  /**
+   * With DEPENDENT, the motion of handle `id` >= 1 from its place in the input: the source is
+   * dragged there and stays sewn. The filter keeps a reference: changing the object
+   * modifies this filter. Setting nullptr removes it. A motion factorizes nothing but when
+   * other handles begin to move.
+   */
+  void SetHandleMotion(int id, vtkHandleMotion* motion);
+  vtkHandleMotion* GetHandleMotion(int id) const;
+  void RemoveAllHandleMotions();
+  ///@}
+
+  ///@{
+  /**
+   * The same for user interfaces: a table of further motions, see vtkSurfaceDeformation.
+   */
+  void SetNumberOfMotionRows(int count);
+  int GetNumberOfMotionRows() const;
+  void SetMotionRow(int row, double id, double scaleX, double scaleY, double scaleZ, double angle,
+    double axisX, double axisY, double axisZ, double centerX, double centerY, double centerZ,
+    double translationX, double translationY, double translationZ);
+  ///@}
+
+  vtkMTimeType GetMTime() override;
 
   ///@{
   /**
@@ -154,7 +201,7 @@ public:
   ///@}
 
   /**
-   * How many matrices the source's system, which is kept, has factorized.
+   * How many matrices the source's systems, which are kept, have factorized.
    */
   vtkGetMacro(NumberOfFactorizations, int);
 
@@ -165,7 +212,7 @@ public:
 
 protected:
   vtkMeshMerge();
-  ~vtkMeshMerge() override = default;
+  ~vtkMeshMerge() override;
 
   void Execute(cartan::FilterRun& run) override;
   void ForgetResults() override;
@@ -174,15 +221,23 @@ protected:
 private:
   struct Sides;
   struct Sewn;
+  struct Holds;
+  class Internals;
   Sides ReadSides(cartan::FilterRun& run) const;
-  std::vector<char> HeldPoints(
-    const Sides& sides, const std::vector<std::vector<int>>& loops, cartan::FilterRun& run) const;
+  void HoldHandles(const Sides& sides, Holds& holds) const;
+  Holds FindHolds(
+    const Sides& sides, const std::vector<cartan::LoopPair>& pairs, cartan::FilterRun& run) const;
+  std::vector<int> ReadFeatures(const Sides& sides, const Holds& holds) const;
+  cartan::FittedSource Fit(const Sides& sides, const cartan::MergeInput& target,
+    const std::vector<cartan::LoopPair>& pairs,
+    const std::vector<std::vector<cartan::LoopKey>>& keys, Holds& holds, cartan::FilterRun& run);
   Sewn Sew(const Sides& sides, const cartan::PairedLoops& paired, cartan::FilterRun& run);
   void WriteOutputs(const Sides& sides, const cartan::PairedLoops& paired, const Sewn& sewn,
     cartan::FilterRun& run);
 
   std::string BoundaryKeyArrayName = "BoundaryKey";
   std::string HandleArrayName = "Handle";
+  std::string FeatureArrayName = "Feature";
   int Configuration = INDEPENDENT;
   double BendWidth = 0.0;
   double TransitionWidth = 0.0;
@@ -191,6 +246,7 @@ private:
   int NumberOfFactorizations = 0;
   double SeamAngleMean = 0.0;
   double SeamAngleMaximum = 0.0;
+  std::unique_ptr<Internals> State;
 };
 
 #endif

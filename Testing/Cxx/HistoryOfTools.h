@@ -335,6 +335,23 @@ inline Subject Merge()
       Number<Filter>(&Filter::SetBendWidth, { 0.0, 0.5 }),
       Number<Filter>(&Filter::SetTransitionWidth, { 0.0, 0.3, 0.1 }),
       Of<Filter>(3, [](Filter* f, int value) { f->SetSeamFairing(value); }),
+      Of<Filter>(3,
+        [](Filter* f, int value)
+        {
+          f->RemoveAllHandleMotions();
+          f->SetNumberOfMotionRows(0);
+          if (value == 1)
+          {
+            vtkNew<vtkHandleMotion> motion;
+            motion->SetTranslation(0.1, 0.0, 0.2);
+            f->SetHandleMotion(1, motion);
+          }
+          else if (value == 2)
+          {
+            f->SetMotionRow(0, 2, 1, 1, 1, 20, 0, 0, 1, 0, 0, 0, 0, 0.1, 0);
+          }
+        }),
+      Name<Filter>(&Filter::SetFeatureArrayName, { "Feature", "Handle" }),
       Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "None" }),
       Name<Filter>(&Filter::SetBoundaryKeyArrayName, { "BoundaryKey", "Handle" }) });
 }

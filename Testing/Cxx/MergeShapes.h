@@ -194,18 +194,18 @@ struct Sides
 };
 
 /// Loops without keys are paired by where they lie.
-inline Merged Merge(
-  const Shape& target, const Shape& source, const Keys& keys, const std::vector<char>& isHeld = {})
+inline Merged Merge(const Shape& target, const Shape& source, const Keys& keys,
+  const std::vector<cartan::SourceHold>& holds = {})
 {
   const Sides sides(target, source, keys);
   const cartan::PairedLoops paired = cartan::PairLoops(sides.Target, sides.Source,
-    isHeld.empty() ? cartan::LoopAlignment::BySimilarity : cartan::LoopAlignment::AsTheyLie);
+    holds.empty() ? cartan::LoopAlignment::BySimilarity : cartan::LoopAlignment::AsTheyLie);
   std::vector<std::vector<int>> loops;
   for (const cartan::LoopPair& pair : paired.Pairs)
   {
     loops.push_back(pair.Source);
   }
-  const cartan::MeshMerge merge(sides.Source.Surface, loops, isHeld);
+  const cartan::MeshMerge merge(sides.Source.Surface, loops, holds);
   Merged merged;
   merged.Fit = merge.Fit(sides.Target.Surface, paired.Pairs, paired.Keys);
   merged.Joined =

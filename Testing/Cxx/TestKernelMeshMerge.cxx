@@ -299,9 +299,9 @@ TEST(MeshMerge, TurnsBoundariesWhenFeaturesAreHeld)
     Eigen::AngleAxisd(25.0 * Degrees, Eigen::Vector3d::UnitX()).toRotationMatrix();
   source.Positions = (source.Positions * tilt.transpose()).rowwise() +
     Eigen::RowVector3d(0, 0, 3.35 + std::sin(25.0 * Degrees));
-  std::vector<char> isHeld(source.NumberOfVertices(), 0);
-  std::fill(isHeld.end() - 3 * 32, isHeld.end(), 1);
-  const Merged merged = Merge(target, source, { { 0, target.NumberOfVertices() - 32 } }, isHeld);
+  std::vector<cartan::SourceHold> holds(source.NumberOfVertices());
+  std::fill(holds.end() - 3 * 32, holds.end(), cartan::SourceHold::Kept);
+  const Merged merged = Merge(target, source, { { 0, target.NumberOfVertices() - 32 } }, holds);
   for (int v = source.NumberOfVertices() - 3 * 32; v < source.NumberOfVertices(); ++v)
   {
     EXPECT_EQ((merged.Fit.Positions.row(v) - source.Positions.row(v)).norm(), 0.0);

@@ -34,7 +34,7 @@ struct Faded : Merged
 };
 
 Faded Fade(const Shape& target, const Shape& source, const Keys& keys, double width,
-  const std::vector<char>& isHeld = {})
+  const std::vector<cartan::SourceHold>& holds = {})
 {
   Sides sides(target, source, keys);
   const cartan::PairedLoops paired =
@@ -46,7 +46,7 @@ Faded Fade(const Shape& target, const Shape& source, const Keys& keys, double wi
   }
   const cartan::Transition transition(sides.Target.Surface, paired.Pairs, width);
   const cartan::CutSurface& cut = transition.GetCut();
-  const cartan::MeshMerge merge(sides.Source.Surface, loops, isHeld);
+  const cartan::MeshMerge merge(sides.Source.Surface, loops, holds);
   Faded faded;
   faded.Fit =
     merge.Fit({ cut.Mesh, cut.Positions }, transition.GetPairs(), transition.MoveKeys(paired.Keys));
@@ -54,7 +54,7 @@ Faded Fade(const Shape& target, const Shape& source, const Keys& keys, double wi
   faded.Positions = cartan::JoinedPositions(faded.Joined, *cut.Positions, faded.Fit.Positions);
   faded.Mesh = cartan::TriangleMesh(faded.Joined.NumberOfVertices(), faded.Joined.Faces);
   faded.Fading = transition.Fade(
-    *sides.Source.Surface.Mesh, faded.Fit, isHeld, faded.Joined, faded.Mesh, faded.Positions);
+    *sides.Source.Surface.Mesh, faded.Fit, holds, faded.Joined, faded.Mesh, faded.Positions);
   return faded;
 }
 
@@ -210,21 +210,21 @@ TEST(Transition, RefusesHeldPoints)
   const Shape target = OpenCylinder(24, 20, 1.0, 2.0);
   Shape source = target;
   source.Positions.col(2).array() += 1.0;
-  std::vector<char> isHeld(source.NumberOfVertices(), 0);
-  std::fill(isHeld.begin() + 8 * 24, isHeld.end(), 1); // from .8 on
+  std::vector<cartan::SourceHold> holds(source.NumberOfVertices());
+  std::fill(holds.begin() + 8 * 24, holds.end(), cartan::SourceHold::Kept); // from .8 on
   const Keys keys = { { 0, target.NumberOfVertices() - 24 } };
   const std::string advice = Advice("unmark them, or raise BendWidth where that holds them.");
   try
   {
-    Fade(target, source, keys, 1.0, isHeld);
+    Fade(target, source, keys, 1.0, holds);
     FAIL();
   }
   catch (const cartan::Error& error)
   {
     EXPECT_NE(std::string(error.what()).find(advice), std::string::npos) << error.what();
   }
-  std::fill(isHeld.begin(), isHeld.begin() + 12 * 24, 0);
-  EXPECT_EQ(Fade(target, source, keys, 1.0, isHeld).EulerNumber(), 0);
+  std::fill(holds.begin(), holds.begin() + 12 * 24, cartan::SourceHold::Free);
+  EXPECT_EQ(Fade(target, source, keys, 1.0, holds).EulerNumber(), 0);
 }
 
 TEST(Transition, RefusesWhatIsWiderThanTheSurface)

@@ -25,6 +25,14 @@ struct LoopPair
   std::vector<int> Target;
 };
 
+/// What holds a vertex of the source.
+enum class SourceHold : char
+{
+  Free,
+  Kept, ///< its place
+  Moved ///< its target, which changes from one fit to the next
+};
+
 /// The source so deformed that its boundaries lie on the target's.
 struct FittedSource
 {
@@ -41,7 +49,7 @@ struct FittedSource
 /// (LoopSimilarities). The rest of the source follows with details that turn and scale
 /// (Eq. 10).
 ///
-/// Without held vertices the result does not depend on where, how large and how turned
+/// Without vertices that are held the result does not depend on where, how large and how turned
 /// the source is: it is configuration-independent, and a source that fits after a
 /// similarity goes through just that. With some, they keep their place, and the source
 /// is deformed between them and the seam (section 5.2; the boundary turns there too, s_i
@@ -50,17 +58,19 @@ struct FittedSource
 class MeshMerge
 {
 public:
-  /// `isHeld` is empty or #V of the source, non-zero where a vertex keeps its place.
+  /// `holds` is empty or #V of the source.
   /// Factorizes once for all keys. Throws Error(BadInput) where a vertex of the loops is
   /// held, and what SimilarityDeformer throws.
   MeshMerge(MergeInput source, const std::vector<std::vector<int>>& sourceLoops,
-    const std::vector<char>& isHeld, SolverBackend backend = SolverBackend::Automatic,
+    const std::vector<SourceHold>& holds, SolverBackend backend = SolverBackend::Automatic,
     const ExecutionContext& context = {});
 
-  /// A set of keys for each pair of loops, which are those given to the constructor;
-  /// see MatchLoops and LoopSimilarities for what it throws.
+  /// A set of keys for each pair of loops, which are those given to the constructor, and
+  /// positions and transforms (the linear part of a motion, such as s R) of all vertices that
+  /// are Moved; see MatchLoops and LoopSimilarities for what it throws.
   FittedSource Fit(const MergeInput& target, const std::vector<LoopPair>& pairs,
-    const std::vector<std::vector<LoopKey>>& keys, const ExecutionContext& context = {}) const;
+    const std::vector<std::vector<LoopKey>>& keys, const HandleTargets& moved = {},
+    const ExecutionContext& context = {}) const;
 
   int GetNumberOfFactorizations() const { return this->Deformer->GetNumberOfFactorizations(); }
   std::size_t GetBytes() const { return this->Deformer->GetBytes(); }
@@ -69,6 +79,21 @@ private:
   MergeInput Source;
   std::unique_ptr<SimilarityDeformer> Deformer;
 };
+
+/// Gives `all` the rows of `more`, whose vertices it does not have.
+void AddTargets(const HandleTargets& more, HandleTargets& all);
+
+/// Targets of the vertices of handles that go through motions: one for each of `moving`, which
+/// are in increasing order; `handles` are those of the vertices (#V).
+HandleTargets MotionTargets(const Points& rest, const std::vector<int>& handles,
+  const std::vector<int>& moving, const std::vector<HandleMotion>& motions);
+
+/// Targets of fixed features, regions that move as one similarity: of each, the
+/// similarity that takes it closest to where it came when it was free. `features` (#V): k >=
+/// 1 for a vertex of feature k, 0 for others. Throws Error(BadInput) for features whose points
+/// determine no similarity.
+HandleTargets FeatureTargets(
+  const Points& rest, const Points& fitted, const std::vector<int>& features);
 
 /// The points of surfaces that are sewn together: the target's and the fitted
 /// source's; where both have one, the target's. #V of the joined surface x 3.

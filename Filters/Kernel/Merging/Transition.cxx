@@ -2,6 +2,7 @@
 #include "Merging/Transition.h"
 
 #include "Merging/SeamFairing.h"
+#include "Merging/SmoothStep.h"
 #include "Mesh/BoundaryLoops.h"
 
 #include <algorithm>
@@ -86,19 +87,12 @@ int BandOfIsoline(const TriangleMesh& whole, const CutSurface& cut, const std::v
     ErrorCode::BadInput, "The end of a transition touches no transition. Lower TransitionWidth.");
 }
 
-/// 3 t^2 - 2 t^3: smooth at both ends of [0, 1].
-double SmoothStep(double t)
-{
-  t = std::min(1.0, std::max(0.0, t));
-  return t * t * (3.0 - 2.0 * t);
-}
-
-void RequireFree(const TransitionBands& bands, const std::vector<char>& isHeld)
+void RequireFree(const TransitionBands& bands, const std::vector<SourceHold>& holds)
 {
   IdSample held;
-  for (std::size_t v = 0; v < isHeld.size(); ++v)
+  for (std::size_t v = 0; v < holds.size(); ++v)
   {
-    if (isHeld[v] && bands.LoopOf[v] >= 0)
+    if (holds[v] != SourceHold::Free && bands.LoopOf[v] >= 0)
     {
       held.Add(static_cast<long long>(v));
     }
@@ -245,12 +239,12 @@ Fading Transition::FindFading(const TriangleMesh& source, const FittedSource& fi
 }
 
 Fading Transition::Fade(const TriangleMesh& source, const FittedSource& fitted,
-  const std::vector<char>& isHeld, const JoinedSurface& joined, const TriangleMesh& mesh,
+  const std::vector<SourceHold>& holds, const JoinedSurface& joined, const TriangleMesh& mesh,
   Points& positions, const ExecutionContext& context) const
 {
   const TransitionBands bands = FindBands(source, fitted.Positions,
     LoopsOf(this->Pairs, &LoopPair::Source), this->Width, "source", context.Part(0.0, 0.3));
-  RequireFree(bands, isHeld);
+  RequireFree(bands, holds);
   Fading fading = this->FindFading(source, fitted, bands, joined);
   std::vector<int> region;
   for (int v = 0; v < joined.NumberOfVertices(); ++v)

@@ -53,10 +53,10 @@ public:
   /// with the points outside the band given, x_S the fitted source, x_T the target's
   /// points at the same angles and distances, and t rising smoothly from 0 at the
   /// seam to 1 at the band's end. All with one operator, that of the joined surface:
-  /// so where both agree, nothing changes. `isHeld` (empty or #V of the source) must be zero in
+  /// so where both agree, nothing changes. `holds` (empty or #V of the source) must be Free in
   /// the band, or Error(BadInput) is thrown, as where the band is too wide for the source.
   Fading Fade(const TriangleMesh& source, const FittedSource& fitted,
-    const std::vector<char>& isHeld, const JoinedSurface& joined, const TriangleMesh& mesh,
+    const std::vector<SourceHold>& holds, const JoinedSurface& joined, const TriangleMesh& mesh,
     Points& positions, const ExecutionContext& context = {}) const;
 
 private:
