@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Sewing a surface of 100,000 points onto another of that size: the first time, with a moved
+// key, a moved handle, and with a transition, next to the set-up of one deformation by implicit
+// similarities of that size in the same run. Processor time, so that other programs do not count.
+#include "BenchmarkTools.h"
+
+#include "Kernel/Base/Constants.h"
+#include "Kernel/Merging/LoopPairing.h"
+#include "Kernel/Merging/SeamFairing.h"
+#include "Kernel/Merging/Transition.h"
+#include "Kernel/Mesh/GrowByRings.h"
+
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <functional>
+
+using namespace benchmarks;
+using namespace cartan;
+
+namespace
+{
+constexpr int Around = 400;
+constexpr int Along = 250;
+
+/// A tube with waves around it from z = `from` to `from` + 4: 100,000 points.
+MergeInput Tube(double from, int waves)
+{
+  Points points(Around * Along, 3);
+  Triangles faces(2 * Around * (Along - 1), 3);
+  for (int j = 0; j < Along; ++j)
+  {
+    for (int i = 0; i < Around; ++i)
+    {
+      const double angle = 2.0 * Pi * i / Around;
+      const double radius = 1.0 + 0.02 * std::cos(waves * angle);
+      points.row(Around * j + i) << radius * std::cos(angle), radius * std::sin(angle),
+        from + 4.0 * j / (Along - 1);
+    }
+  }
+  for (int j = 0; j + 1 < Along; ++j)
+  {
+    for (int i = 0; i < Around; ++i)
+    {
+      const int a = Around * j + i;
+      const int b = Around * j + (i + 1) % Around;
+      faces.row(2 * a) << a, b, b + Around;
+      faces.row(2 * a + 1) << a, b + Around, a + Around;
+    }
+  }
+  return { std::make_shared<TriangleMesh>(static_cast<int>(points.rows()), faces),
+    std::make_shared<Points>(points) };
+}
+
+double Seconds(const std::function<void()>& work)
+{
+  const double start = ProcessorTime();
+  work();
+  return ProcessorTime() - start;
+}
+
+/// One deformation of the source: both ends are handles.
+double SimilaritySetUp(const MergeInput& source)
+{
+  HandleProblem problem;
+  problem.Mesh = source.Mesh;
+  problem.Rest = source.Positions;
+  problem.Handle.assign(source.Mesh->NumberOfVertices(), 0);
+  std::fill_n(problem.Handle.begin(), Around, 1);
+  std::fill_n(problem.Handle.rbegin(), Around, 2);
+  problem.Moving = { 2 };
+  return Seconds(
+    [&]
+    {
+      SimilarityDeformer deformer(problem, {});
+      deformer.SetReconstruction(SimilarityReconstruction::LeastSquares);
+      deformer.Prepare();
+    });
+}
+
+/// Loops with one key.
+PairedLoops Pair(const MergeInput& target, const MergeInput& source, int keyOfTarget)
+{
+  MergeBoundary targetSide{ target, "target", std::vector<int>(Around * Along, 0) };
+  MergeBoundary sourceSide{ source, "source", std::vector<int>(Around * Along, 0) };
+  targetSide.Keys[Around * (Along - 1) + keyOfTarget] = 1;
+  sourceSide.Keys[0] = 1;
+  return PairLoops(targetSide, sourceSide, LoopAlignment::BySimilarity);
+}
+
+/// All that a moved key costs.
+void Sew(const MeshMerge& merge, const MergeInput& target, const MergeInput& source, int key,
+  double& fit, double& join, double& transition)
+{
+  PairedLoops paired;
+  FittedSource fitted;
+  fit += Seconds(
+    [&]
+    {
+      paired = Pair(target, source, key);
+      fitted = merge.Fit(target, paired.Pairs, paired.Keys);
+    });
+  join += Seconds(
+    [&]
+    {
+      const JoinedSurface joined = JoinSurfaces(*target.Mesh, *source.Mesh, fitted.Loops);
+      Points positions = JoinedPositions(joined, *target.Positions, fitted.Positions);
+      const TriangleMesh mesh(joined.NumberOfVertices(), joined.Faces);
+      FairRegion(mesh, GrowByRings(mesh, SeamVertices(joined), 2), positions);
+      MeasureSeam(joined, mesh, positions);
+    });
+  transition += Seconds(
+    [&]
+    {
+      const Transition bands(target, paired.Pairs, 0.5);
+      const CutSurface& cut = bands.GetCut();
+      fitted =
+        merge.Fit({ cut.Mesh, cut.Positions }, bands.GetPairs(), bands.MoveKeys(paired.Keys));
+      const JoinedSurface joined = JoinSurfaces(*cut.Mesh, *source.Mesh, fitted.Loops);
+      Points positions = JoinedPositions(joined, *cut.Positions, fitted.Positions);
+      const TriangleMesh mesh(joined.NumberOfVertices(), joined.Faces);
+      bands.Fade(*source.Mesh, fitted, {}, joined, mesh, positions);
+    });
+}
+}
+
+int main()
+{
+  try
+  {
+    const MergeInput target = Tube(0.0, 8);
+    const MergeInput source = Tube(5.0, 5);
+    const double similarity = SimilaritySetUp(source);
+    std::unique_ptr<MeshMerge> merge;
+    double setUp = Seconds(
+      [&]
+      {
+        merge = std::make_unique<MeshMerge>(source,
+          std::vector<std::vector<int>>{ Pair(target, source, 0).Pairs[0].Source },
+          std::vector<SourceHold>{});
+      });
+    double fit = 0.0;
+    double join = 0.0;
+    double transition = 0.0;
+    Sew(*merge, target, source, 0, fit, join, transition);
+    setUp += fit + join;
+    fit = join = transition = 0.0;
+    Sew(*merge, target, source, 20, fit, join, transition);
+    std::printf("Tubes of %d points\n", Around * Along);
+    PrintRow("set-up of one similarity deformation", "", similarity, "s");
+    PrintRow("sewn the first time", "", setUp, "s");
+    PrintRow("  ratio to it", "<= 3", setUp / similarity, "", setUp <= 3.0 * similarity);
+    PrintRow("a moved key", "<= 1 s", fit + join, "s", fit + join <= 1.0);
+    PrintRow("  pairs and fit", "", fit, "s");
+    PrintRow("  sewing, fairing of 2 rings, angles", "", join, "s");
+    PrintRow("with a transition of 31 rings", "", transition, "s");
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
