@@ -8,7 +8,6 @@
 #include "Kernel/Morph/LinearMorph.h"
 #include "Kernel/Morph/TriangleGradientMorph.h"
 
-#include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
@@ -45,22 +44,6 @@ std::pair<int, int> WindowAt(double t, const std::vector<double>& parameters)
   const int before = cartan::PlaceBetweenKeys(t, parameters).Before;
   return { std::max(before - 1, 0), std::min(before + 3, count) };
 }
-
-bool IsBlockOf(vtkCompositeDataSet* composite, vtkPolyData* surface)
-{
-  if (!composite)
-  {
-    return false;
-  }
-  bool isFound = false;
-  auto blocks = vtk::TakeSmartPointer(composite->NewIterator());
-  for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
-  {
-    isFound = isFound || blocks->GetCurrentDataObject() == surface;
-  }
-  return isFound;
-}
-
 }
 
 class vtkSurfaceMorph::Internals
@@ -194,7 +177,8 @@ int vtkSurfaceMorph::RequestInformation(
   vtkInformation* info = outputVector->GetInformationObject(0);
   info->Remove(Pipeline::TIME_STEPS());
   info->Remove(Pipeline::TIME_RANGE());
-  if (this->FollowTime && state.Parameters.size() > 1 && !state.FirstOutOfOrder())
+  if (this->FollowTime && !this->IsElsewhere() && state.Parameters.size() > 1 &&
+    !state.FirstOutOfOrder())
   {
     const std::vector<double> steps = state.StepsBetween(this->StepsBetweenKeyFrames);
     const double range[2] = { steps.front(), steps.back() };
@@ -202,6 +186,37 @@ int vtkSurfaceMorph::RequestInformation(
     info->Set(Pipeline::TIME_RANGE(), range, 2);
   }
   return 1;
+}
+
+void vtkSurfaceMorph::SetNumberOfWeights(int count)
+{
+  std::vector<double> weights = this->Weights;
+  weights.resize(std::max(count, 0), 0.0);
+  this->SetMember(this->Weights, weights);
+}
+
+void vtkSurfaceMorph::SetWeight(int keyFrame, double weight)
+{
+  if (keyFrame < 0)
+  {
+    vtkErrorMacro("Key frames are numbered from 0; got " << keyFrame << ".");
+    return;
+  }
+  this->SetNumberOfWeights(std::max(keyFrame + 1, this->GetNumberOfWeights()));
+  this->SetMember(this->Weights[keyFrame], weight);
+}
+
+double vtkSurfaceMorph::GetWeight(int keyFrame) const
+{
+  return keyFrame >= 0 && keyFrame < this->GetNumberOfWeights() ? this->Weights[keyFrame] : 0.0;
+}
+
+/// All key frames may matter, or those around t.
+std::pair<int, int> vtkSurfaceMorph::Window(double t) const
+{
+  const std::vector<double>& parameters = this->State->Parameters;
+  return this->IsElsewhere() ? std::pair(0, static_cast<int>(parameters.size()))
+                             : WindowAt(t, parameters);
 }
 
 double vtkSurfaceMorph::RequestedParameter(vtkInformation* output) const
@@ -229,7 +244,7 @@ int vtkSurfaceMorph::RequestUpdateExtent(
   {
     const double requested = this->RequestedParameter(outputVector->GetInformationObject(0));
     const double t = std::isfinite(requested) ? requested : 0.0; // Execute() refuses it
-    const int missing = state.NextMissing(WindowAt(t, state.Parameters));
+    const int missing = state.NextMissing(this->Window(t));
     // With all there, what was asked for last costs the input nothing.
     state.Requested = missing >= 0 ? missing : state.Requested;
     inputVector[0]->GetInformationObject(0)->Set(
@@ -274,7 +289,7 @@ int vtkSurfaceMorph::RequestData(
 void vtkSurfaceMorph::RequireKeyFrames(cartan::FilterRun& run) const
 {
   const Internals& state = *this->State;
-  if (IsBlockOf(state.Composite, vtkPolyData::SafeDownCast(run.InputObject())))
+  if (cartan::IsBlockOf(state.Composite, run.InputObject()))
   {
     throw Error(ErrorCode::BadInput,
       "The input is a composite data set: make a surface of it (Merge Blocks, then Extract "
@@ -299,7 +314,7 @@ void vtkSurfaceMorph::RequireKeyFrames(cartan::FilterRun& run) const
 bool vtkSurfaceMorph::CollectKeyFrames(cartan::FilterRun& run, double t)
 {
   Internals& state = *this->State;
-  const std::pair<int, int> window = WindowAt(t, state.Parameters);
+  const std::pair<int, int> window = this->Window(t);
   const bool hasTimes = !state.Times.empty();
   if (hasTimes)
   {
@@ -353,8 +368,11 @@ void vtkSurfaceMorph::Execute(cartan::FilterRun& run)
   options.NeedsPlacement = this->Method != LINEAR;
   options.IsPinned = this->Placement == PINNED_HANDLE;
   options.HandleArray = this->HandleArrayName;
+  options.ParameterArray = this->ParameterArrayName;
   options.CloseVolume = this->CloseVolume;
-  const cartan::MorphNumbers numbers = cartan::MorphAt(t, this->State->Keys, options, run);
+  const cartan::MorphNumbers numbers = cartan::MorphAt(
+    cartan::ReadPlace(t, this->Weights, this->ParameterArrayName, this->State->Keys),
+    this->State->Keys, options, run);
   this->NumberOfIterations = numbers.Iterations;
   this->SetupTime = numbers.SetupTime;
   this->EvaluationTime = numbers.EvaluationTime;
@@ -399,6 +417,11 @@ void vtkSurfaceMorph::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Method: " << this->Method << "\n";
   os << indent << "Parameter: " << this->Parameter << "\n";
+  os << indent << "ParameterArrayName: " << this->ParameterArrayName << "\n";
+  for (std::size_t k = 0; k < this->Weights.size(); ++k)
+  {
+    os << indent << "Weight " << k << ": " << this->Weights[k] << "\n";
+  }
   os << indent << "FollowTime: " << this->FollowTime << "\n";
   os << indent << "StepsBetweenKeyFrames: " << this->StepsBetweenKeyFrames << "\n";
   os << indent << "Placement: " << this->Placement << "\n";

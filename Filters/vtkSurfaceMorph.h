@@ -27,8 +27,8 @@
  *
  * Errors, each with an empty output: fewer than two key frames; key frames that
  * differ in their number of points or their cells, or are not manifold, not
- * consistently oriented or not finite; times that do not increase; a composite
- * input; what the methods refuse, see Method.
+ * consistently oriented or not finite; weights of another number or sum; times that do not
+ * increase; a composite input; what the methods refuse, see Method.
  *
  * References: Lipman, Sorkine, Levin, Cohen-Or, Linear Rotation-invariant
  * Coordinates for Meshes, 2005, section 4.1; Bose, O'Rourke, Shu, Wuhrer,
@@ -42,8 +42,10 @@
 
 #include "vtkSurfaceFilter.h"
 
-#include <memory> // For the private state
-#include <string> // For the array's name
+#include <memory>  // For the private state
+#include <string>  // For the array's name
+#include <utility> // For a range of key frames
+#include <vector>  // For weights
 
 namespace cartan
 {
@@ -97,6 +99,34 @@ public:
    */
   vtkSetMacro(Parameter, double);
   vtkGetMacro(Parameter, double);
+  ///@}
+
+  ///@{
+  /**
+   * A point array of the first key frame with a parameter for each point, in place of
+   * Parameter and time: parts of the surface arrive at different times (Alexa,
+   * Differential coordinates for local mesh morphing and deformation, 2003). Edges and
+   * triangles are at the mean of their points, and arrays at the mean of all. Empty:
+   * none. Default: empty.
+   */
+  void SetParameterArrayName(const std::string& name)
+  {
+    this->SetMember(this->ParameterArrayName, name);
+  }
+  std::string GetParameterArrayName() const { return this->ParameterArrayName; }
+  ///@}
+
+  ///@{
+  /**
+   * Weights of all key frames, in place of Parameter and time: a blend shape of more than
+   * two poses that does not shrink. They sum to 1; some may be negative, or more than 1.
+   * Arrays are those of the key frame with the largest weight. None: 0 weights, the
+   * default.
+   */
+  void SetNumberOfWeights(int count);
+  int GetNumberOfWeights() const { return static_cast<int>(this->Weights.size()); }
+  void SetWeight(int keyFrame, double weight);
+  double GetWeight(int keyFrame) const;
   ///@}
 
   ///@{
@@ -275,6 +305,10 @@ private:
   class Internals;
 
   double RequestedParameter(vtkInformation* output) const;
+  std::pair<int, int> Window(double t) const;
+
+  /// Whether Parameter and time are not used.
+  bool IsElsewhere() const { return !this->ParameterArrayName.empty() || !this->Weights.empty(); }
   void RequireKeyFrames(cartan::FilterRun& run) const;
   bool CollectKeyFrames(cartan::FilterRun& run, double t);
   std::unique_ptr<cartan::SurfaceMorph> NewMorph(
@@ -283,6 +317,8 @@ private:
   std::unique_ptr<Internals> State;
   int Method = DISCRETE_FORMS;
   double Parameter = 0.0;
+  std::string ParameterArrayName;
+  std::vector<double> Weights;
   bool FollowTime = true;
   int StepsBetweenKeyFrames = 10;
   int Placement = RIGID_INTERPOLATION;

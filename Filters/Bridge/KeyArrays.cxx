@@ -133,7 +133,8 @@ void Interpolate(const Attributes& keys, const std::vector<double>& parameters, 
 }
 
 std::string InterpolateArrays(const std::vector<vtkPolyData*>& keys,
-  const std::vector<double>& parameters, double t, const std::string& expected, FilterRun& run)
+  const std::vector<double>& parameters, double t, const std::vector<std::string>& expected,
+  FilterRun& run)
 {
   Attributes points;
   Attributes cells;
@@ -145,7 +146,10 @@ std::string InterpolateArrays(const std::vector<vtkPolyData*>& keys,
   std::set<std::string> dropped;
   Interpolate(points, parameters, t, run.Output()->GetPointData(), run, dropped);
   Interpolate(cells, parameters, t, run.Output()->GetCellData(), run, dropped);
-  dropped.erase(expected);
+  for (const std::string& name : expected)
+  {
+    dropped.erase(name);
+  }
   std::string list;
   for (const std::string& name : dropped)
   {

@@ -10,11 +10,15 @@
 #include "Kernel/Morph/MorphVolume.h"
 #include "Kernel/Morph/RigidPlacement.h"
 
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkTimerLog.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cartan
 {
@@ -72,10 +76,10 @@ std::unique_ptr<PreparedMorph> Prepare(const MatchedSurfaces& matched,
   return prepared;
 }
 
-Points PositionsAt(double t, vtkPolyData* first, const MorphOptions& options,
+Points PositionsAt(const MorphPlace& at, vtkPolyData* first, const MorphOptions& options,
   const ContentKey& preparedKey, PreparedMorph& prepared, FilterRun& run)
 {
-  Points positions = prepared.Morph->Evaluate(t, run.Context().Part(0.7, 0.9));
+  Points positions = prepared.Morph->Evaluate(at, run.Context().Part(0.7, 0.9));
   run.Warn(prepared.Morph->GetWarning());
   if (options.NeedsPlacement)
   {
@@ -88,7 +92,7 @@ Points PositionsAt(double t, vtkPolyData* first, const MorphOptions& options,
           options.IsPinned ? PinWeights(prepared.Keys, ReadPinned(first, options.HandleArray))
                            : AreaWeights(prepared.Keys, run.Context().Part(0.9, 0.9)));
       });
-    placement->Place(t, positions);
+    placement->Place(at, positions);
   }
   if (options.CloseVolume)
   {
@@ -97,7 +101,7 @@ Points PositionsAt(double t, vtkPolyData* first, const MorphOptions& options,
       prepared.Volume = std::make_unique<MorphVolume>(prepared.Keys, run.Context().Part(0.9, 0.95));
     }
     run.Warn(prepared.Volume->GetWarning());
-    run.Warn(prepared.Volume->Close(t, positions));
+    run.Warn(prepared.Volume->Close(at.GetParameter(), positions));
   }
   return positions;
 }
@@ -125,10 +129,65 @@ void WriteBetween(const std::vector<vtkPolyData*>& keys, const KeyPlace& place,
     }
   }
 }
+MorphPlace ReadLocalPlace(vtkPolyData* first, const std::string& name)
+{
+  vtkDataArray* array = RequirePointArray(first, name, 1);
+  Eigen::VectorXd parameters(array->GetNumberOfTuples());
+  IdSample bad;
+  for (Eigen::Index v = 0; v < parameters.size(); ++v)
+  {
+    parameters[v] = array->GetTuple1(v);
+    if (!std::isfinite(parameters[v]))
+    {
+      bad.Add(v);
+    }
+  }
+  if (!bad.IsEmpty())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The point array \"" + name + "\" has " + bad.Describe("value", "values") +
+        " that are NaN or infinite: give each point a parameter, from 0 at the first key frame to "
+        "1 "
+        "at the last.");
+  }
+  const double mean = parameters.mean();
+  // One parameter everywhere is no local place, and a key frame can be met to the last bit.
+  return (parameters.array() == parameters[0]).all() ? MorphPlace(parameters[0])
+                                                     : MorphPlace::Local(parameters, mean);
 }
 
-MorphNumbers MorphAt(double t, const KeySurfaces& keys, const MorphOptions& options, FilterRun& run)
+MorphPlace ReadBlend(const std::vector<double>& weights, const std::vector<double>& parameters)
 {
+  const Eigen::VectorXd all =
+    Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()));
+  if (weights.size() != parameters.size())
+  {
+    throw Error(ErrorCode::BadInput,
+      "There are " + std::to_string(weights.size()) + " weights for " +
+        std::to_string(parameters.size()) + " key frames: give each key frame one weight.");
+  }
+  if (!(std::abs(all.sum() - 1.0) < 1e-9))
+  {
+    throw Error(ErrorCode::BadInput,
+      "The weights of the key frames sum to " + std::to_string(all.sum()) +
+        ": make them sum to 1.");
+  }
+  Eigen::Index largest = 0;
+  const bool isKey = all.maxCoeff(&largest) == 1.0 && all.cwiseAbs().sum() == 1.0;
+  return isKey ? MorphPlace(parameters[largest]) : MorphPlace::Blend(all, parameters);
+}
+}
+
+MorphNumbers MorphAt(
+  const MorphPlace& at, const KeySurfaces& keys, const MorphOptions& options, FilterRun& run)
+{
+  if (options.CloseVolume && !at.IsUniform())
+  {
+    throw Error(ErrorCode::BadInput,
+      "CloseVolume needs one parameter for the whole surface: turn it off, or use neither weights "
+      "nor an array of parameters.");
+  }
+  const double t = at.GetParameter();
   MorphNumbers numbers;
   const MatchedSurfaces matched = ReadMatchedSurfaces(keys.Surfaces, keys.Roles,
     "Key frames need the same points and cells in the same order, such as one surface in several "
@@ -156,19 +215,51 @@ MorphNumbers MorphAt(double t, const KeySurfaces& keys, const MorphOptions& opti
 
   const double start = vtkTimerLog::GetUniversalTime();
   const KeyPlace place = PlaceBetweenKeys(t, keys.Parameters);
-  if (place.Part == 0.0 || place.Part == 1.0)
+  if (at.IsUniform() && (place.Part == 0.0 || place.Part == 1.0))
   {
     // Key frames to the last bit, with all their arrays.
     run.Output()->ShallowCopy(keys.Surfaces[place.Before + (place.Part == 1.0)]);
   }
   else
   {
-    const Points positions = PositionsAt(t, keys.Surfaces.front(), options, key, *prepared, run);
+    const Points positions = PositionsAt(at, keys.Surfaces.front(), options, key, *prepared, run);
     numbers.Iterations = prepared->Morph->GetNumberOfIterations();
     WriteBetween(keys.Surfaces, place, *prepared, positions, run);
-    run.Warn(InterpolateArrays(keys.Surfaces, keys.Parameters, t, options.HandleArray, run));
+    run.Warn(InterpolateArrays(
+      keys.Surfaces, keys.Parameters, t, { options.HandleArray, options.ParameterArray }, run));
   }
   numbers.EvaluationTime = vtkTimerLog::GetUniversalTime() - start;
   return numbers;
+}
+
+MorphPlace ReadPlace(double t, const std::vector<double>& weights,
+  const std::string& parameterArray, const KeySurfaces& keys)
+{
+  if (!weights.empty() && !parameterArray.empty())
+  {
+    throw Error(
+      ErrorCode::BadInput, "There are weights and an array of parameters: choose one of the two.");
+  }
+  if (!weights.empty())
+  {
+    return ReadBlend(weights, keys.Parameters);
+  }
+  return parameterArray.empty() ? MorphPlace(t)
+                                : ReadLocalPlace(keys.Surfaces.front(), parameterArray);
+}
+
+bool IsBlockOf(vtkCompositeDataSet* composite, vtkDataObject* block)
+{
+  if (!composite)
+  {
+    return false;
+  }
+  bool isFound = false;
+  auto blocks = vtk::TakeSmartPointer(composite->NewIterator());
+  for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
+  {
+    isFound = isFound || blocks->GetCurrentDataObject() == block;
+  }
+  return isFound;
 }
 }

@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+class vtkCompositeDataSet;
+class vtkDataObject;
+
 namespace cartan
 {
 /// The key frames around a parameter.
@@ -22,10 +25,11 @@ struct KeySurfaces
 struct MorphOptions
 {
   std::function<std::unique_ptr<SurfaceMorph>(const KeyFrames&, const ExecutionContext&)> NewMorph;
-  ContentKey Settings;     ///< of all that NewMorph depends on
-  bool NeedsPlacement;     ///< whether the method leaves the places of components open
-  bool IsPinned;           ///< placed by the points with a handle, else by area
-  std::string HandleArray; ///< where these are
+  ContentKey Settings;        ///< of all that NewMorph depends on
+  bool NeedsPlacement;        ///< whether the method leaves the places of components open
+  bool IsPinned;              ///< placed by the points with a handle, else by area
+  std::string HandleArray;    ///< where these are
+  std::string ParameterArray; ///< which only the first key frame needs
   bool CloseVolume;
 };
 
@@ -36,7 +40,17 @@ struct MorphNumbers
   double EvaluationTime = 0.0;
 };
 
-/// Writes the surface at parameter t, a finite number.
+/// Writes the surface at a place of finite numbers. Arrays are those at its parameter.
 MorphNumbers MorphAt(
-  double t, const KeySurfaces& keys, const MorphOptions& options, FilterRun& run);
+  const MorphPlace& at, const KeySurfaces& keys, const MorphOptions& options, FilterRun& run);
+
+/// At `weights` of the key frames, unless there are none; with a parameter for each point in the
+/// array `parameterArray` of the first key frame, unless that is empty; else at t everywhere.
+/// Throws Error(BadInput) for both, for another number of weights, and unless these are finite and
+/// sum to one; for parameters that are not finite.
+MorphPlace ReadPlace(double t, const std::vector<double>& weights,
+  const std::string& parameterArray, const KeySurfaces& keys);
+
+/// Whether a composite data set, if there is one, has this block.
+bool IsBlockOf(vtkCompositeDataSet* composite, vtkDataObject* block);
 }

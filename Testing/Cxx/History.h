@@ -143,6 +143,8 @@ inline void AddArrays(vtkPolyData* surface)
       surface->GetPoint(v, target);
       target[1] += target[2] > 3.0 ? 0.5 : 0.0;
     });
+  vtktest::AddArray(surface, "Part", 1,
+    [surface](vtkIdType v, double* part) { *part = 0.25 * surface->GetPoint(v)[2]; });
   vtktest::AddArray(surface, "Turn", 3,
     [surface](vtkIdType v, double* turn)
     {

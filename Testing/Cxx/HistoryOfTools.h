@@ -89,6 +89,16 @@ inline Subject Morph()
       Enumeration<Filter>(2, &Filter::SetTransitionInterpolation),
       Enumeration<Filter>(2, &Filter::SetLengthPolish), Switch<Filter>(&Filter::SetFollowTime),
       Of<Filter>(2, [](Filter* f, int value) { f->SetStepsBetweenKeyFrames(1 + 2 * value); }),
+      Name<Filter>(&Filter::SetParameterArrayName, { "", "Part" }),
+      Of<Filter>(3,
+        [](Filter* f, int value)
+        {
+          f->SetNumberOfWeights(0);
+          for (int k = 0; k < value + 1 && value > 0; ++k)
+          {
+            f->SetWeight(k, 1.0 / (value + 1));
+          }
+        }),
       Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "Other" }) });
 }
 

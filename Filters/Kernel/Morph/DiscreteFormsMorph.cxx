@@ -141,9 +141,12 @@ std::size_t DiscreteFormsMorph::GetBytes() const
     TotalBytes(this->Parameters, this->MeanTransitions, this->Directed, this->Weights);
 }
 
-Eigen::VectorXd DiscreteFormsMorph::LengthsAt(double t, const ExecutionContext& context) const
+Eigen::VectorXd DiscreteFormsMorph::LengthsAt(
+  const MorphPlace& place, const ExecutionContext& context) const
 {
-  Eigen::VectorXd lengths = this->KeyLengths.Evaluate(t, context);
+  Eigen::VectorXd lengths = place.Sample(
+    this->KeyLengths, static_cast<int>(this->Directed.size()),
+    [this](int e) { return this->EdgeVertices(e); }, context);
   IdSample negative;
   for (Eigen::Index e = 0; e < lengths.size(); ++e)
   {
@@ -155,7 +158,7 @@ Eigen::VectorXd DiscreteFormsMorph::LengthsAt(double t, const ExecutionContext& 
   if (!negative.IsEmpty())
   {
     throw Error(ErrorCode::BadInput,
-      "At the parameter " + std::to_string(t) +
+      "At the parameter " + std::to_string(place.GetParameter()) +
         " edges of negative length would be needed around " + negative.Describe("point", "points") +
         ": choose a parameter nearer to those of the key frames.");
   }
@@ -163,9 +166,12 @@ Eigen::VectorXd DiscreteFormsMorph::LengthsAt(double t, const ExecutionContext& 
 }
 
 Points DiscreteFormsMorph::RingsAt(
-  double t, const Eigen::VectorXd& lengths, const ExecutionContext& context) const
+  const MorphPlace& place, const Eigen::VectorXd& lengths, const ExecutionContext& context) const
 {
-  const Eigen::VectorXd values = this->KeyRings.Evaluate(t, context);
+  // A ring is at the parameter of its center.
+  const Eigen::VectorXd values = place.Sample(
+    this->KeyRings, this->Mesh->NumberOfDirectedEdges(),
+    [this](int d) { return std::array{ this->Mesh->Origin(d) }; }, context);
   Points rings = Eigen::Map<const Points>(values.data(), values.size() / 3, 3);
   for (std::size_t e = 0; e < this->Directed.size(); ++e)
   {
@@ -182,7 +188,7 @@ Points DiscreteFormsMorph::RingsAt(
 }
 
 Matrices DiscreteFormsMorph::EdgeTransitionsAt(
-  double t, const Points& rings, const ExecutionContext& context) const
+  const MorphPlace& place, const Points& rings, const ExecutionContext& context) const
 {
   const int numberOfEdges = static_cast<int>(this->Directed.size());
   Matrices result(numberOfEdges, 9);
@@ -195,7 +201,8 @@ Matrices DiscreteFormsMorph::EdgeTransitionsAt(
     }
     return result;
   }
-  const Eigen::VectorXd vectors = this->FromMean.Evaluate(t, context);
+  const Eigen::VectorXd vectors = place.Sample(
+    this->FromMean, numberOfEdges, [this](int e) { return this->EdgeVertices(e); }, context);
   context.For(numberOfEdges,
     [&](int begin, int end)
     {
@@ -219,12 +226,12 @@ bool DiscreteFormsMorph::Average(
 }
 
 Matrices DiscreteFormsMorph::FramesAt(
-  double t, const Matrices& edgeTransitions, const ExecutionContext& context)
+  const MorphPlace& place, const Matrices& edgeTransitions, const ExecutionContext& context)
 {
   // From the nearest parameter whose frames are known, and where that is too far,
   // by way of parameters in between.
   constexpr int parts = 8;
-  const FrameMemory::Known start = this->Known.Nearest(t);
+  const FrameMemory::Known start = this->Known.Nearest(place.GetParameter());
   Matrices frames = start.Frames;
   bool isConverged = this->Average(edgeTransitions, frames, context.Part(0.0, 0.1));
   if (!isConverged)
@@ -232,7 +239,7 @@ Matrices DiscreteFormsMorph::FramesAt(
     frames = start.Frames;
     for (int part = 1; part < parts; ++part)
     {
-      const double between = start.Parameter + (t - start.Parameter) * part / parts;
+      const MorphPlace between = place.From(start.Parameter, part, parts);
       const Points rings = this->RingsAt(between, this->LengthsAt(between, context), context);
       this->Average(this->EdgeTransitionsAt(between, rings, context), frames,
         context.Part(0.1 * part, 0.1 * (part + 1)));
@@ -241,7 +248,7 @@ Matrices DiscreteFormsMorph::FramesAt(
   }
   if (!isConverged)
   {
-    this->Warning = "The frames at the parameter " + std::to_string(t) +
+    this->Warning = "The frames at the parameter " + std::to_string(place.GetParameter()) +
       " are not the best: their improvement did not end. The key frames are far from each other; "
       "add one in between.";
   }
@@ -293,16 +300,16 @@ void DiscreteFormsMorph::WarnOfLengths(
   }
 }
 
-Points DiscreteFormsMorph::Evaluate(double t, const ExecutionContext& context)
+Points DiscreteFormsMorph::Evaluate(const MorphPlace& place, const ExecutionContext& context)
 {
   const TriangleMesh& mesh = *this->Mesh;
   this->Iterations = 0;
   this->Warning.clear();
-  const Eigen::VectorXd lengths = this->LengthsAt(t, context);
-  const Points rings = this->RingsAt(t, lengths, context);
-  const Matrices edgeTransitions = this->EdgeTransitionsAt(t, rings, context);
+  const Eigen::VectorXd lengths = this->LengthsAt(place, context);
+  const Points rings = this->RingsAt(place, lengths, context);
+  const Matrices edgeTransitions = this->EdgeTransitionsAt(place, rings, context);
   const bool isLinear = this->Solver != FrameSolver::RotationAveraging;
-  Matrices frames = this->FramesAt(t, edgeTransitions, context.Part(0.1, isLinear ? 0.4 : 0.8));
+  Matrices frames = this->FramesAt(place, edgeTransitions, context.Part(0.1, isLinear ? 0.4 : 0.8));
   if (isLinear)
   {
     frames = this->LinearFrames(edgeTransitions, std::move(frames), context.Part(0.4, 0.8));
@@ -311,7 +318,7 @@ Points DiscreteFormsMorph::Evaluate(double t, const ExecutionContext& context)
   Field positions = Field::Zero(mesh.NumberOfVertices(), 3);
   this->Laplacian->Solve(
     PositionRightHandSide(mesh, frames, rings, context, this->Weights), positions);
-  this->WarnOfLengths(t, lengths, positions);
+  this->WarnOfLengths(place.GetParameter(), lengths, positions);
   context.Report(1.0);
   return positions;
 }

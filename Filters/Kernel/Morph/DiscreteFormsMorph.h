@@ -6,6 +6,8 @@
 #include "Morph/KeyInterpolation.h"
 #include "Morph/SurfaceMorph.h"
 
+#include <array>
+
 namespace cartan
 {
 /// Interpolates between key frames by their discrete forms (Lipman et al.,
@@ -64,7 +66,7 @@ public:
 
   /// Throws Error(BadInput) far outside of the key frames, where a length is
   /// negative.
-  Points Evaluate(double t, const ExecutionContext& context) override;
+  Points Evaluate(const MorphPlace& place, const ExecutionContext& context) override;
 
   int GetNumberOfIterations() const override { return this->Iterations; }
 
@@ -74,16 +76,24 @@ public:
   std::size_t GetBytes() const override;
 
 private:
+  std::array<int, 2> EdgeVertices(int edge) const
+  {
+    const int d = this->Directed[edge];
+    return { this->Mesh->Origin(d), this->Mesh->Neighbor(d) };
+  }
   void InterpolateLengths(const KeyFrames& keys);
   void SetUpAveraging(const ExecutionContext& context);
   void InterpolateRings(const KeyFrames& keys, const std::vector<Matrices>& frames);
   void InterpolateTransitions(const std::vector<Matrices>& frames);
-  Eigen::VectorXd LengthsAt(double t, const ExecutionContext& context) const;
+  Eigen::VectorXd LengthsAt(const MorphPlace& place, const ExecutionContext& context) const;
   /// The edges in the frames of their origins: #D x 3.
-  Points RingsAt(double t, const Eigen::VectorXd& lengths, const ExecutionContext& context) const;
+  Points RingsAt(
+    const MorphPlace& place, const Eigen::VectorXd& lengths, const ExecutionContext& context) const;
   /// One per edge, in the direction of Directed: #E x 9.
-  Matrices EdgeTransitionsAt(double t, const Points& rings, const ExecutionContext& context) const;
-  Matrices FramesAt(double t, const Matrices& edgeTransitions, const ExecutionContext& context);
+  Matrices EdgeTransitionsAt(
+    const MorphPlace& place, const Points& rings, const ExecutionContext& context) const;
+  Matrices FramesAt(
+    const MorphPlace& place, const Matrices& edgeTransitions, const ExecutionContext& context);
   bool Average(const Matrices& edgeTransitions, Matrices& frames, const ExecutionContext& context);
   Matrices LinearFrames(
     const Matrices& edgeTransitions, Matrices frames, const ExecutionContext& context);

@@ -232,10 +232,16 @@ std::size_t IsometricMorph::GetBytes() const
     TotalBytes(this->IsHeld, this->IsUnstitched);
 }
 
-Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
+Points IsometricMorph::Evaluate(const MorphPlace& place, const ExecutionContext& context)
 {
   context.Report(0.0);
-  const Eigen::VectorXd lengths = this->KeyLengths.Evaluate(t, context);
+  const double t = place.GetParameter();
+  const auto endsOf = [this](int e) {
+    return std::array{ this->Topology.Edges(e, 0), this->Topology.Edges(e, 1) };
+  };
+  const auto endsOfHinge = [&](int h) { return endsOf(this->Topology.Hinges[h].Edge); };
+  const Eigen::VectorXd lengths =
+    place.Sample(this->KeyLengths, this->Topology.NumberOfEdges(), endsOf, context);
   const IdSample noLength = WithoutLength(this->Topology, lengths);
   if (!noLength.IsEmpty())
   {
@@ -245,8 +251,8 @@ Points IsometricMorph::Evaluate(double t, const ExecutionContext& context)
         ", ids of the first end points, would not be positive: stay closer to the key frames.");
   }
   const Layouts layouts = LayOut(this->Topology, lengths, context);
-  const Matrices transitions =
-    HingeTransitions(this->Topology, layouts, this->KeyAngles.Evaluate(t, context), context);
+  const Matrices transitions = HingeTransitions(this->Topology, layouts,
+    place.Sample(this->KeyAngles, this->Topology.NumberOfHinges(), endsOfHinge, context), context);
   Matrices frames = WalkFrames(this->Topology, this->Forest, transitions);
   this->FrameSteps = 0;
   this->Warning.clear();

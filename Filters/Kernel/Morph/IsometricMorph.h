@@ -85,7 +85,7 @@ public:
   /// Angles and lengths are extrapolated beyond the first and last key frame.
   /// Lengths that break the triangle inequality give a flat triangle. Throws
   /// Error(BadInput) if a length is not positive.
-  Points Evaluate(double t, const ExecutionContext& context = {}) override;
+  Points Evaluate(const MorphPlace& place, const ExecutionContext& context = {}) override;
 
   /// The edge lengths at t, which Evaluate reaches or comes close to: #E, in the
   /// order of GetEdges().

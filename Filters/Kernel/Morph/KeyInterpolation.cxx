@@ -119,49 +119,70 @@ void KeyInterpolation::ComputeSlopes(int dimension)
   }
 }
 
-Eigen::VectorXd KeyInterpolation::Evaluate(double t, const ExecutionContext& context) const
+KeyInterpolation::Coefficients KeyInterpolation::CoefficientsAt(double t) const
 {
-  const int keys = static_cast<int>(this->Parameters.size());
+  const bool isCubic = this->Parameters.size() > 2;
   const KeyPlace place = PlaceBetweenKeys(t, this->Parameters);
   const int k = place.Before;
   const double s = place.Part;
   const double width = this->Parameters[k + 1] - this->Parameters[k];
+  if (!isCubic)
+  {
+    return { k, 1.0 - s, s, 0.0, 0.0 };
+  }
+  // Hermite's cubic, and straight lines outside.
+  if (s < 0.0)
+  {
+    return { k, 1.0, 0.0, s * width, 0.0 };
+  }
+  if (s > 1.0)
+  {
+    return { k, 0.0, 1.0, 0.0, (s - 1.0) * width };
+  }
+  return { k, (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s), s * s * (3.0 - 2.0 * s),
+    s * (1.0 - s) * (1.0 - s) * width, s * s * (s - 1.0) * width };
+}
 
-  // v = a v_k + b v_{k+1} + c v'_k + d v'_{k+1}: Hermite's cubic, and straight
-  // lines outside.
-  double a = 1.0 - s;
-  double b = s;
-  double c = 0.0;
-  double d = 0.0;
-  if (keys > 2 && s < 0.0)
+double KeyInterpolation::RowAt(Eigen::Index row, const Coefficients& at) const
+{
+  const int k = at.Before;
+  double result = at.A * this->Values(row, k) + at.B * this->Values(row, k + 1);
+  if (this->Slopes.size() > 0)
   {
-    a = 1.0;
-    b = 0.0;
-    c = s * width;
+    result += at.C * this->Slopes(row, k) + at.D * this->Slopes(row, k + 1);
   }
-  else if (keys > 2 && s > 1.0)
-  {
-    a = 0.0;
-    b = 1.0;
-    d = (s - 1.0) * width;
-  }
-  else if (keys > 2)
-  {
-    a = (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s);
-    b = s * s * (3.0 - 2.0 * s);
-    c = s * (1.0 - s) * (1.0 - s) * width;
-    d = s * s * (s - 1.0) * width;
-  }
+  return result;
+}
+
+Eigen::VectorXd KeyInterpolation::Evaluate(double t, const ExecutionContext& context) const
+{
+  const Coefficients at = this->CoefficientsAt(t);
   Eigen::VectorXd result(this->Values.rows());
   context.For(static_cast<int>(this->Values.rows()),
     [&](int begin, int end)
     {
       for (int row = begin; row < end; ++row)
       {
-        result[row] = a * this->Values(row, k) + b * this->Values(row, k + 1);
-        if (keys > 2)
+        result[row] = this->RowAt(row, at);
+      }
+    });
+  return result;
+}
+
+Eigen::VectorXd KeyInterpolation::EvaluateEach(
+  const Eigen::VectorXd& parameters, const ExecutionContext& context) const
+{
+  Eigen::VectorXd result(this->Values.rows());
+  const Eigen::Index rows = parameters.size() > 0 ? this->Values.rows() / parameters.size() : 0;
+  context.For(static_cast<int>(parameters.size()),
+    [&](int begin, int end)
+    {
+      for (Eigen::Index item = begin; item < end; ++item)
+      {
+        const Coefficients at = this->CoefficientsAt(parameters[item]);
+        for (Eigen::Index row = item * rows; row < (item + 1) * rows; ++row)
         {
-          result[row] += c * this->Slopes(row, k) + d * this->Slopes(row, k + 1);
+          result[row] = this->RowAt(row, at);
         }
       }
     });

@@ -47,6 +47,13 @@ public:
   /// The m numbers at t.
   Eigen::VectorXd Evaluate(double t, const ExecutionContext& context = {}) const;
 
+  /// The same with a parameter for each item (#items), which has m / #items rows.
+  Eigen::VectorXd EvaluateEach(
+    const Eigen::VectorXd& parameters, const ExecutionContext& context = {}) const;
+
+  /// The sum of the keys' numbers, with a weight for each (#keys).
+  Eigen::VectorXd Blend(const Eigen::VectorXd& weights) const { return this->Values * weights; }
+
   const std::vector<double>& GetParameters() const { return this->Parameters; }
   const Field& GetValues() const { return this->Values; }
 
@@ -54,6 +61,15 @@ public:
 
 private:
   void ComputeSlopes(int dimension);
+
+  /// v = A v_k + B v_{k+1} + C v'_k + D v'_{k+1}.
+  struct Coefficients
+  {
+    int Before; // k
+    double A, B, C, D;
+  };
+  Coefficients CoefficientsAt(double t) const;
+  double RowAt(Eigen::Index row, const Coefficients& at) const;
 
   std::vector<double> Parameters;
   Field Values;

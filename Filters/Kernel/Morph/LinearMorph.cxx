@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Morph/LinearMorph.h"
 
+#include <array>
+
 namespace cartan
 {
 LinearMorph::LinearMorph(const KeyFrames& keys)
@@ -14,9 +16,11 @@ LinearMorph::LinearMorph(const KeyFrames& keys)
   this->Coordinates = KeyInterpolation(keys.Parameters, std::move(coordinates), 3);
 }
 
-Points LinearMorph::Evaluate(double t, const ExecutionContext& context)
+Points LinearMorph::Evaluate(const MorphPlace& place, const ExecutionContext& context)
 {
-  const Eigen::VectorXd coordinates = this->Coordinates.Evaluate(t, context);
-  return Eigen::Map<const Points>(coordinates.data(), coordinates.size() / 3, 3);
+  const auto size = static_cast<int>(this->Coordinates.GetValues().rows() / 3);
+  const Eigen::VectorXd coordinates = place.Sample(
+    this->Coordinates, size, [](int v) { return std::array{ v }; }, context);
+  return Eigen::Map<const Points>(coordinates.data(), size, 3);
 }
 }

@@ -12,7 +12,7 @@ class LinearMorph : public SurfaceMorph
 {
 public:
   explicit LinearMorph(const KeyFrames& keys);
-  Points Evaluate(double t, const ExecutionContext& context) override;
+  Points Evaluate(const MorphPlace& place, const ExecutionContext& context) override;
   std::size_t GetBytes() const override { return this->Coordinates.GetBytes(); }
 
 private:

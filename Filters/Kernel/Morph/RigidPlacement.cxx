@@ -10,6 +10,35 @@
 
 namespace cartan
 {
+namespace
+{
+/// The rotation from which those to the others sum to zero with these weights (Karcher, Riemannian
+/// center of mass and mollifier smoothing, 1977), from the one of the largest weight on.
+Eigen::Matrix3d MeanRotation(
+  const std::vector<Eigen::Matrix3d>& rotations, const Eigen::VectorXd& weights)
+{
+  // Rotations within a quarter turn agree to 1e-15 after a dozen steps.
+  constexpr int mostSteps = 30;
+  Eigen::Index largest = 0;
+  weights.maxCoeff(&largest);
+  Eigen::Matrix3d mean = rotations[largest];
+  for (int step = 0; step < mostSteps; ++step)
+  {
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < weights.size(); ++k)
+    {
+      turn += weights[k] * VectorFromRotation(Eigen::Matrix3d(rotations[k] * mean.transpose()));
+    }
+    mean = (RotationFromVector(turn) * mean).eval();
+    if (turn.norm() < 1e-15)
+    {
+      break;
+    }
+  }
+  return mean;
+}
+}
+
 Eigen::VectorXd AreaWeights(const KeyFrames& keys, const ExecutionContext& context)
 {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(keys.Mesh->NumberOfVertices());
@@ -106,26 +135,63 @@ RigidPlacement::RigidPlacement(const KeyFrames& keys, Eigen::VectorXd weights)
   }
 }
 
-void RigidPlacement::Place(double t, Points& positions) const
+Eigen::VectorXd RigidPlacement::ComponentParameters(const MorphPlace& place) const
 {
   const TriangleMesh& mesh = *this->Keys.Mesh;
-  const auto [k, part] = PlaceBetweenKeys(t, this->Keys.Parameters);
-
-  const Points own = ComponentCenters(mesh, positions, this->Weights);
-  const auto rotationsTo = [&](int key)
+  if (!place.IsLocal())
   {
-    return FitComponentRotations(
-      mesh, positions, own, this->Keys.Positions[key], this->Centers[key], this->Weights);
-  };
-  std::vector<Eigen::Matrix3d> rotations = rotationsTo(k);
-  const std::vector<Eigen::Matrix3d> toAfter = rotationsTo(k + 1);
-  for (std::size_t c = 0; c < rotations.size(); ++c)
-  {
-    const Eigen::Vector3d guess = this->Turns[k].row(static_cast<Eigen::Index>(c));
-    const Eigen::Vector3d turn = VectorFromRotation(toAfter[c] * rotations[c].transpose(), guess);
-    rotations[c] = RotationFromVector(part * turn) * rotations[c];
+    return Eigen::VectorXd::Constant(mesh.NumberOfComponents(), place.GetParameter());
   }
-  const Eigen::VectorXd centers = this->CenterPaths.Evaluate(t);
+  Eigen::VectorXd parameters = Eigen::VectorXd::Zero(mesh.NumberOfComponents());
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (mesh.IsUsed(v))
+    {
+      parameters[mesh.Component(v)] += this->Weights[v] * place.GetParameters()[v];
+    }
+  }
+  return parameters;
+}
+
+void RigidPlacement::Place(const MorphPlace& place, Points& positions) const
+{
+  const TriangleMesh& mesh = *this->Keys.Mesh;
+  const Eigen::VectorXd parameters = this->ComponentParameters(place);
+  const Points own = ComponentCenters(mesh, positions, this->Weights);
+  // To the key frames that are needed, once each.
+  std::vector<std::vector<Eigen::Matrix3d>> all(this->Keys.Positions.size());
+  const auto rotationsTo = [&](std::size_t key) -> const std::vector<Eigen::Matrix3d>&
+  {
+    if (all[key].empty())
+    {
+      all[key] = FitComponentRotations(
+        mesh, positions, own, this->Keys.Positions[key], this->Centers[key], this->Weights);
+    }
+    return all[key];
+  };
+  const int components = mesh.NumberOfComponents();
+  std::vector<Eigen::Matrix3d> rotations(components);
+  for (int c = 0; c < components; ++c)
+  {
+    if (place.IsBlend())
+    {
+      std::vector<Eigen::Matrix3d> toKeys;
+      for (std::size_t key = 0; key < all.size(); ++key)
+      {
+        toKeys.push_back(rotationsTo(key)[c]);
+      }
+      rotations[c] = MeanRotation(toKeys, place.GetWeights());
+      continue;
+    }
+    const auto [k, part] = PlaceBetweenKeys(parameters[c], this->Keys.Parameters);
+    const Eigen::Matrix3d& before = rotationsTo(k)[c];
+    const Eigen::Vector3d guess = this->Turns[k].row(c);
+    const Eigen::Vector3d turn =
+      VectorFromRotation(rotationsTo(k + 1)[c] * before.transpose(), guess);
+    rotations[c] = RotationFromVector(part * turn) * before;
+  }
+  const Eigen::VectorXd centers = place.IsBlend() ? this->CenterPaths.Blend(place.GetWeights())
+                                                  : this->CenterPaths.EvaluateEach(parameters);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     if (mesh.IsUsed(v))

@@ -28,7 +28,10 @@ public:
   /// component have the weight 0, they count equally.
   RigidPlacement(const KeyFrames& keys, Eigen::VectorXd weights);
 
-  void Place(double t, Points& positions) const;
+  /// A component of a surface with a parameter for each vertex is placed at their mean, by the
+  /// weights of vertices; one of a blend shape at the mean of the key frames' centers and
+  /// rotations.
+  void Place(const MorphPlace& place, Points& positions) const;
 
   std::size_t GetBytes() const
   {
@@ -37,6 +40,8 @@ public:
   }
 
 private:
+  Eigen::VectorXd ComponentParameters(const MorphPlace& place) const;
+
   KeyFrames Keys;
   Eigen::VectorXd Weights;      // #V, adding up to 1 over each component
   std::vector<Points> Centers;  // per key frame, #components x 3

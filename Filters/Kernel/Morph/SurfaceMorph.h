@@ -4,6 +4,7 @@
 #include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
+#include "Morph/MorphPlace.h"
 
 #include <memory>
 #include <string>
@@ -26,10 +27,10 @@ class SurfaceMorph
 public:
   virtual ~SurfaceMorph() = default;
 
-  /// The surface at parameter t: #V x 3, each component up to a rigid motion,
+  /// The surface at a place: #V x 3, each component up to a rigid motion,
   /// which RigidPlacement determines; the key frames at their parameters.
   /// Parameters outside of the key frames extrapolate.
-  virtual Points Evaluate(double t, const ExecutionContext& context) = 0;
+  virtual Points Evaluate(const MorphPlace& place, const ExecutionContext& context) = 0;
 
   /// The number of iterations of the last Evaluate; 0 for direct methods.
   virtual int GetNumberOfIterations() const { return 0; }

@@ -5,6 +5,7 @@
 #include "Differential/Laplacian.h"
 #include "Mesh/TriangleShape.h"
 
+#include <array>
 #include <queue>
 #include <tuple>
 
@@ -244,11 +245,18 @@ TriangleGradientMorph::TriangleGradientMorph(const KeyFrames& keys, const Execut
     context.Part(numberOfKeys / (numberOfKeys + 1.0), 1.0));
 }
 
-Points TriangleGradientMorph::Evaluate(double t, const ExecutionContext& context)
+Points TriangleGradientMorph::Evaluate(const MorphPlace& place, const ExecutionContext& context)
 {
   const TriangleMesh& mesh = *this->Mesh;
-  const Eigen::VectorXd vectors = this->RotationVectors.Evaluate(t, context);
-  const Eigen::VectorXd local = this->Corners.Evaluate(t, context);
+  const auto verticesOf = [&mesh](int f)
+  {
+    const Triangles& triangles = mesh.GetTriangles();
+    return std::array{ triangles(f, 0), triangles(f, 1), triangles(f, 2) };
+  };
+  const Eigen::VectorXd vectors =
+    place.Sample(this->RotationVectors, mesh.NumberOfTriangles(), verticesOf, context);
+  const Eigen::VectorXd local =
+    place.Sample(this->Corners, mesh.NumberOfTriangles(), verticesOf, context);
   Matrices corners(mesh.NumberOfTriangles(), 9);
   context.For(mesh.NumberOfTriangles(),
     [&](int begin, int end)

@@ -26,7 +26,7 @@ public:
   /// area in one of the key frames.
   explicit TriangleGradientMorph(const KeyFrames& keys, const ExecutionContext& context = {});
 
-  Points Evaluate(double t, const ExecutionContext& context) override;
+  Points Evaluate(const MorphPlace& place, const ExecutionContext& context) override;
   std::size_t GetBytes() const override
   {
     return this->RotationVectors.GetBytes() + this->Corners.GetBytes() +
