@@ -62,7 +62,7 @@ cartan::DeformationMethod vtkAsRigidAsPossibleDeformation::NewMethod(
   auto* rigid = deformer.get();
   cartan::DeformationMethod method;
   method.Deformer = std::move(deformer);
-  method.Configure = [this, rigid](cartan::FilterRun&)
+  method.Configure = [this, rigid](cartan::FilterRun&, const cartan::ExecutionContext&)
   {
     rigid->SetBending(this->Bending);
     rigid->SetIteration(this->MaximumIterations, this->Tolerance);

@@ -31,9 +31,11 @@ std::unique_ptr<cartan::VolumeModel> NewModel(
 }
 
 /// Of the mesh without slivers: which slivers it is without depends on the handles.
+/// Points that are moved to see what rounding decides have another first one.
 cartan::ContentKey KeyOfModel(const cartan::HandleProblem& problem, cartan::ContentKey surface)
 {
   const cartan::Triangles& triangles = problem.GetParted()->GetTriangles();
+  surface.AddBytes(problem.Rest->data(), 3 * sizeof(double));
   return problem.Whole
     ? surface.AddBytes(triangles.data(), static_cast<std::size_t>(triangles.size()) * sizeof(int))
     : surface;
@@ -109,9 +111,9 @@ cartan::DeformationMethod vtkFrameDeformation::FrameMethod(
   auto* frames = deformer.get();
   cartan::DeformationMethod method;
   method.Deformer = std::move(deformer);
-  method.Configure = [this, frames](cartan::FilterRun& run)
+  method.Configure = [this, frames](cartan::FilterRun& run, const cartan::ExecutionContext& context)
   {
-    this->CorrectVolume(*frames, run);
+    this->CorrectVolume(*frames, run, context);
     this->ConfigureTable(*frames);
   };
   method.Decorate = [this, frames](const cartan::DeformedSurface& result, cartan::FilterRun& run)
@@ -126,7 +128,8 @@ cartan::DeformationMethod vtkFrameDeformation::FrameMethod(
   return method;
 }
 
-void vtkFrameDeformation::CorrectVolume(cartan::FrameDeformer& deformer, cartan::FilterRun& run)
+void vtkFrameDeformation::CorrectVolume(
+  cartan::FrameDeformer& deformer, cartan::FilterRun& run, const cartan::ExecutionContext& context)
 {
   static_assert(static_cast<int>(cartan::VolumeCorrection::None) == NO_CORRECTION &&
       static_cast<int>(cartan::VolumeCorrection::FrameScaling) == FRAME_SCALING &&
@@ -137,8 +140,8 @@ void vtkFrameDeformation::CorrectVolume(cartan::FrameDeformer& deformer, cartan:
   if (this->UsesVolumeModel())
   {
     const cartan::HandleProblem& problem = deformer.GetProblem();
-    const auto model = run.Keep<cartan::VolumeModel>(KeyOfModel(problem, run.SurfaceKey()),
-      [&] { return NewModel(problem, run.Context().Part(0.6, 0.8)); });
+    const auto model = run.Keep<cartan::VolumeModel>(
+      KeyOfModel(problem, run.SurfaceKey()), [&] { return NewModel(problem, context); });
     deformer.SetVolumeModel(model);
   }
 }

@@ -196,7 +196,8 @@ protected:
   void ForgetResults() override;
 
 private:
-  void CorrectVolume(cartan::FrameDeformer& deformer, cartan::FilterRun& run);
+  void CorrectVolume(cartan::FrameDeformer& deformer, cartan::FilterRun& run,
+    const cartan::ExecutionContext& context);
   void ConfigureTable(cartan::FrameDeformer& deformer) const;
   bool UsesVolumeModel() const;
   void AddVolumeArrays(const cartan::FrameDeformer& deformer, const cartan::DeformedSurface& result,

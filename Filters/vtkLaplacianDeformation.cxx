@@ -33,6 +33,7 @@ cartan::DeformationMethod vtkLaplacianDeformation::NewMethod(const cartan::Handl
   auto* laplacian = deformer.get();
   cartan::DeformationMethod method;
   method.Deformer = std::move(deformer);
-  method.Configure = [this, laplacian](cartan::FilterRun&) { laplacian->SetRounds(this->Rounds); };
+  method.Configure = [this, laplacian](cartan::FilterRun&, const cartan::ExecutionContext&)
+  { laplacian->SetRounds(this->Rounds); };
   return method;
 }

@@ -25,9 +25,10 @@ cartan::DeformationMethod vtkRotationInvariantDeformation::NewFrameMethod(
   auto deformer = std::make_unique<cartan::RotationInvariantDeformer>(problem, backend, context);
   auto* frames = deformer.get();
   cartan::DeformationMethod method = this->FrameMethod(std::move(deformer));
-  method.Configure = [this, frames, correct = std::move(method.Configure)](cartan::FilterRun& run)
+  method.Configure = [this, frames, correct = std::move(method.Configure)](
+                       cartan::FilterRun& run, const cartan::ExecutionContext& part)
   {
-    correct(run);
+    correct(run, part);
     frames->SetFrameProjection(static_cast<cartan::FrameProjection>(this->FrameProjection));
   };
   return method;

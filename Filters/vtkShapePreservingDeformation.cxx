@@ -40,9 +40,10 @@ cartan::DeformationMethod vtkShapePreservingDeformation::NewFrameMethod(
   auto deformer = std::make_unique<cartan::ShapePreservingDeformer>(problem, backend, context);
   auto* shape = deformer.get();
   cartan::DeformationMethod method = this->FrameMethod(std::move(deformer));
-  method.Configure = [this, shape, correct = std::move(method.Configure)](cartan::FilterRun& run)
+  method.Configure = [this, shape, correct = std::move(method.Configure)](
+                       cartan::FilterRun& run, const cartan::ExecutionContext& part)
   {
-    correct(run);
+    correct(run, part);
     shape->SetIteration(this->MaximumIterations, this->Tolerance);
   };
   method.Decorate = [this, shape, decorate = std::move(method.Decorate)](

@@ -54,7 +54,7 @@ cartan::DeformationMethod vtkSimilarityDeformation::NewMethod(const cartan::Hand
   similarity->Prepare(context.Part(0.7, 1.0));
   cartan::DeformationMethod method;
   method.Deformer = std::move(deformer);
-  method.Configure = [this, similarity](cartan::FilterRun&)
+  method.Configure = [this, similarity](cartan::FilterRun&, const cartan::ExecutionContext&)
   {
     similarity->SetReconstruction(
       static_cast<cartan::SimilarityReconstruction>(this->Reconstruction));

@@ -143,6 +143,7 @@ protected:
   cartan::DeformationMethod NewMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
   void AddSettings(cartan::ContentKey& settings) const override;
+  bool NeedsTransforms() const override { return this->GenerateScaleFactor; }
   void ForgetResults() override;
 
 private:

@@ -5,6 +5,7 @@
 #include "Bridge/Preparation.h"
 #include "Bridge/PreparedSurface.h"
 #include "Bridge/SurfaceWriter.h"
+#include "Bridge/TransformArrays.h"
 #include "Kernel/Algebra/ConstrainedSolver.h"
 #include "Kernel/Deformation/HandleCurve.h"
 #include "Kernel/Deformation/JoinedVertices.h"
@@ -30,6 +31,13 @@ namespace
 {
 /// More boxes than anybody grasps one by one; each update sends them to the window.
 constexpr vtkIdType MaximumNumberOfBounds = 1000;
+
+/// On the mesh that is solved on.
+cartan::HandleProblem Reduced(
+  const cartan::HandleProblem& problem, const cartan::ExecutionContext& context)
+{
+  return cartan::WithJoinedVertices(cartan::WithoutSlivers(problem, context));
+}
 }
 
 class vtkSurfaceDeformation::Internals
@@ -304,15 +312,14 @@ std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::Filt
     {
       const double end = 0.75 * this->ProgressBeforeMotion();
       const double middle = isChecked ? 0.5 * (0.12 + end) : end;
-      auto problem = cartan::WithoutSlivers(
-        this->MakeProblem(input, surface, handles, moving), run.Context().Part(0.1, 0.12));
+      const cartan::HandleProblem problem = this->MakeProblem(input, surface, handles, moving);
       auto fresh =
-        make(cartan::WithJoinedVertices(std::move(problem)), run.Context().Part(0.12, middle));
+        make(Reduced(problem, run.Context().Part(0.1, 0.12)), run.Context().Part(0.12, middle));
       this->State->Factorizations += fresh->Method.Deformer->GetNumberOfFactorizations();
       if (isChecked)
       {
         fresh->Moved =
-          make(cartan::WithMovedPoints(fresh->Problem), run.Context().Part(middle, end));
+          make(Reduced(cartan::WithMovedPoints(problem), {}), run.Context().Part(middle, end));
       }
       return fresh;
     });
@@ -379,21 +386,21 @@ void vtkSurfaceDeformation::Deform(cartan::FilterRun& run)
   const auto prepared = this->Prepare(run, surface, *handles, moving, key);
   cartan::SurfaceDeformer& deformer = *prepared->Method.Deformer;
   const int factorizations = deformer.GetNumberOfFactorizations();
-  prepared->Method.Configure(run);
+  const double motion = this->ProgressBeforeMotion();
+  cartan::Configure(*prepared, run, run.Context().Part(0.75 * motion, motion));
   const double ready = vtkTimerLog::GetUniversalTime();
   cartan::ComparedFields fields;
   fields.Transforms =
     this->GenerateFrameChange || this->GenerateRotationVector || this->NeedsTransforms();
   fields.Rotations = this->GenerateRotationVector;
   fields.Normals = input->GetPointData()->GetNormals() || input->GetCellData()->GetNormals();
-  cartan::DeformAndCheck(
-    *prepared, targets, fields, run, run.Context().Part(this->ProgressBeforeMotion(), 0.95));
+  cartan::DeformAndCheck(*prepared, targets, fields, run, run.Context().Part(motion, 0.95));
   this->State->Factorizations += deformer.GetNumberOfFactorizations() - factorizations;
 
   run.Warn(
     cartan::WriteSurface(*surface, prepared->Result.Positions, input, run.Output(), run.Context()));
-  cartan::AddTransformArrays(
-    prepared->Result, this->GenerateFrameChange, this->GenerateRotationVector, run.Output());
+  run.Warn(cartan::AddTransformArrays(
+    prepared->Result, this->GenerateFrameChange, this->GenerateRotationVector, run.Output()));
   prepared->Method.Decorate(prepared->Result, run);
   this->State->FreePoints = deformer.GetNumberOfFreeVertices();
   this->State->SetupTime = ready - start;

@@ -116,7 +116,7 @@ cartan::DeformationMethod vtkVolumetricDeformation::NewMethod(const cartan::Hand
   auto* volumetric = deformer.get();
   cartan::DeformationMethod method;
   method.Deformer = std::move(deformer);
-  method.Configure = [this, volumetric](cartan::FilterRun&)
+  method.Configure = [this, volumetric](cartan::FilterRun&, const cartan::ExecutionContext&)
   { volumetric->SetVolumeRounds(this->VolumeRounds); };
   method.Decorate = [this, volumetric](
                       const cartan::DeformedSurface& result, cartan::FilterRun& run)

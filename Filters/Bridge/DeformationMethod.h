@@ -13,8 +13,10 @@ namespace cartan
 struct DeformationMethod
 {
   std::unique_ptr<SurfaceDeformer> Deformer;
-  /// Hands over the parameters that may change from one motion to the next.
-  std::function<void(FilterRun&)> Configure = [](FilterRun&) {};
+  /// Hands over the parameters that may change from one motion to the next, and
+  /// measures what they need.
+  std::function<void(FilterRun&, const ExecutionContext&)> Configure =
+    [](FilterRun&, const ExecutionContext&) {};
   /// Adds the arrays and takes over the numbers of the concrete method.
   std::function<void(const DeformedSurface&, FilterRun&)> Decorate = [](const DeformedSurface&,
                                                                        FilterRun&) {};

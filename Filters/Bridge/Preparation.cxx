@@ -6,12 +6,29 @@
 
 namespace cartan
 {
+namespace
+{
+bool HaveSameTriangles(const TriangleMesh& a, const TriangleMesh& b)
+{
+  return a.NumberOfTriangles() == b.NumberOfTriangles() && a.GetTriangles() == b.GetTriangles();
+}
+}
+
 std::size_t Preparation::GetBytes() const
 {
   return this->Method.Deformer->GetBytes() +
     TotalBytes(this->Problem.Handle, this->Problem.SoftWeights, this->Result.Positions,
       this->Result.Transforms, this->Result.FrameScale) +
     (this->Moved ? this->Moved->GetBytes() + TotalBytes(*this->Moved->Problem.Rest) : 0);
+}
+
+void Configure(Preparation& prepared, FilterRun& run, const ExecutionContext& context)
+{
+  prepared.Method.Configure(run, context.Part(0.0, prepared.Moved ? 0.5 : 1.0));
+  if (prepared.Moved)
+  {
+    prepared.Moved->Method.Configure(run, context.Part(0.5, 1.0));
+  }
 }
 
 void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
@@ -21,38 +38,16 @@ void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
   const double part = prepared.Moved ? 0.5 : 1.0;
   deformer.Deform(targets, fields.Transforms, prepared.Result, context.Part(0.0, part));
   run.Warn(deformer.GetWarning());
+  run.Warn(DescribeLostDigits(prepared.Problem, prepared.Result));
   if (prepared.Moved)
   {
     Preparation& moved = *prepared.Moved;
-    moved.Method.Configure(run);
     moved.Method.Deformer->Deform(
       targets, fields.Transforms, moved.Result, context.Part(part, 1.0));
-    run.Warn(CompareResults(prepared.Problem, prepared.Result, moved.Result, fields).Describe());
-  }
-}
-
-void AddTransformArrays(
-  const DeformedSurface& result, bool frameChange, bool rotationVector, vtkPolyData* output)
-{
-  const Eigen::Index size = result.Transforms.rows();
-  if (frameChange)
-  {
-    Eigen::VectorXd change(size);
-    for (Eigen::Index v = 0; v < size; ++v)
-    {
-      change[v] = (MatrixAt(result.Transforms, v) - Eigen::Matrix3d::Identity()).norm();
-    }
-    AddPointArray(output, "FrameChange", change);
-  }
-  if (rotationVector)
-  {
-    Points vectors(size, 3);
-    for (Eigen::Index v = 0; v < size; ++v)
-    {
-      vectors.row(v) =
-        VectorFromRotation(ProjectOnRotations(MatrixAt(result.Transforms, v))).transpose();
-    }
-    AddPointArray(output, "RotationVector", vectors);
+    RoundingDifference difference =
+      CompareResults(prepared.Problem, prepared.Result, moved.Result, fields);
+    difference.IsOfSlivers = !HaveSameTriangles(*prepared.Problem.Mesh, *moved.Problem.Mesh);
+    run.Warn(difference.Describe());
   }
 }
 }

@@ -24,13 +24,11 @@ struct Preparation
   std::size_t GetBytes() const;
 };
 
+/// Hands over what may change from one motion to the next.
+void Configure(Preparation& prepared, FilterRun& run, const ExecutionContext& context);
+
 /// Deforms, with transforms where those are compared; with Moved a second time. Warns of what is
 /// odd, and of what differs.
 void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
   const ComparedFields& fields, FilterRun& run, const ExecutionContext& context);
-
-/// Adds the point arrays FrameChange, the Frobenius norm of what the transforms add to the
-/// identity, and RotationVector, in radians.
-void AddTransformArrays(
-  const DeformedSurface& result, bool frameChange, bool rotationVector, vtkPolyData* output);
 }

@@ -155,13 +155,39 @@ std::string UpdateNormals(vtkDataSetAttributes* attributes, vtkIdType count,
   return {};
 }
 
+/// What is left of edges where a part has shrunk to a point, in parts of the size.
+constexpr double Crushed = 1e-10;
+
+/// Vertex normals; zero too where all neighbors are nearer than `least`, and rounding makes
+/// the triangles.
+Points NormalsOfVertices(
+  const TriangleMesh& mesh, const Points& points, double least, const ExecutionContext& context)
+{
+  Points normals = VertexNormals(mesh, points, context);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    bool isPoint = true;
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v) && isPoint; ++d)
+    {
+      isPoint = (points.row(mesh.Neighbor(d)) - points.row(v)).cwiseAbs().maxCoeff() <= least;
+    }
+    if (isPoint)
+    {
+      normals.row(v).setZero();
+    }
+  }
+  return normals;
+}
+
 std::string UpdateAllNormals(const Surface& surface, const Points* rest, const Points& positions,
   vtkPolyData* output, const ExecutionContext& context)
 {
   const vtkIdType numberOfCells = output->GetNumberOfCells();
-  const std::string ofPoints =
-    UpdateNormals(output->GetPointData(), output->GetNumberOfPoints(), "points", rest, positions,
-      [&](const Points& points) { return VertexNormals(*surface.Mesh, points, context); });
+  const double least =
+    Crushed * BoundingDiagonal(rest ? *rest : positions, surface.Mesh->GetTriangles());
+  const std::string ofPoints = UpdateNormals(output->GetPointData(), output->GetNumberOfPoints(),
+    "points", rest, positions,
+    [&](const Points& points) { return NormalsOfVertices(*surface.Mesh, points, least, context); });
   const std::string ofCells =
     UpdateNormals(output->GetCellData(), numberOfCells, "cells", rest, positions,
       [&](const Points& points)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Algebra/Rotation.h"
 
+#include "Kernel/Algebra/ClosestRotation.h"
 #include "TestShapes.h"
 
 #include <Eigen/Eigenvalues>
@@ -318,6 +319,41 @@ TEST(RotationVector, MayExceedALap)
     EXPECT_LT(
       (RotationFromVector((angle + 6 * Pi) * axis) - RotationFromVector(angle * axis)).norm(),
       1e-14);
+  }
+}
+
+//------------------------------------------------------------------------------
+TEST(ClosestRotation, IsOneWhereRoundingMovesItByAsLittle)
+{
+  shapes::Random random(3);
+  const Matrix3d left = RandomRotation(random);
+  const Matrix3d right = RandomRotation(random);
+  const auto made = [&](const Vector3d& diagonal) -> Matrix3d
+  { return left * diagonal.asDiagonal() * right; };
+  const auto moves = [&](const Matrix3d& a)
+  {
+    double largest = 0.0;
+    for (int i = 0; i < 10; ++i)
+    {
+      const Matrix3d other = a + 1e-14 * RandomMatrix(random);
+      largest = std::max(largest, (ProjectOnRotations(other) - ProjectOnRotations(a)).norm());
+    }
+    return largest;
+  };
+  for (const Vector3d& diagonal : { Vector3d(1, 1, 1), Vector3d(2, 1, 0.1), Vector3d(1, 1e-6, 0),
+         Vector3d(1, 0.5, -0.4), Vector3d(1, 1, -0.999) })
+  {
+    EXPECT_TRUE(cartan::HasClosestRotation(made(diagonal))) << diagonal.transpose();
+    EXPECT_EQ(cartan::ClosestRotationOrNone(made(diagonal)), ProjectOnRotations(made(diagonal)));
+    EXPECT_EQ(cartan::ClosestRotationOrNone(1e-12 * made(diagonal)), Matrix3d::Identity());
+    EXPECT_LT(moves(made(diagonal)), 1e-6) << diagonal.transpose();
+  }
+  for (const Vector3d& diagonal :
+    { Vector3d(-1, -1, -1), Vector3d(1, 0.5, -0.5), Vector3d(1, 0, 0), Vector3d(0, 0, 0) })
+  {
+    EXPECT_FALSE(cartan::HasClosestRotation(made(diagonal))) << diagonal.transpose();
+    EXPECT_EQ(cartan::ClosestRotationOrNone(made(diagonal)), Matrix3d::Identity());
+    EXPECT_GT(moves(made(diagonal)), 0.1) << diagonal.transpose();
   }
 }
 

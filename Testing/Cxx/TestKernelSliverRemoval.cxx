@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AllDeformers.h"
 #include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
-#include "Kernel/Deformation/SliverRemoval.h"
 #include "Kernel/Measure/ComponentVolumes.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
+#include "SliverShapes.h"
 #include "TestShapes.h"
 
 #include <gtest/gtest.h>
@@ -15,116 +14,7 @@
 /// Caps and needles must not be felt around them.
 namespace
 {
-using cartan::DeformedSurface;
-using cartan::HandleProblem;
-using cartan::HandleTargets;
-using cartan::Points;
-using shapes::Shape;
-
-constexpr int Around = 14;
-constexpr int Along = 16;
-
-/// Along z from -1 to 1, open.
-Shape Tube()
-{
-  Shape tube = shapes::OpenCylinder(Around, Along, 0.4, 2.0);
-  tube.Positions.rowwise() -= tube.Positions.colwise().mean().eval();
-  return tube;
-}
-
-HandleProblem ProblemOf(const Shape& shape)
-{
-  HandleProblem problem;
-  problem.Mesh =
-    std::make_shared<const cartan::TriangleMesh>(shape.NumberOfVertices(), shape.Faces);
-  problem.Rest = std::make_shared<const Points>(shape.Positions);
-  for (int v = 0; v < shape.NumberOfVertices(); ++v)
-  {
-    const double z = shape.Positions(v, 2);
-    problem.Handle.push_back(z < -0.8 ? 1 : z > 0.8 ? 2 : 0);
-  }
-  problem.Moving = { 2 };
-  return problem;
-}
-
-HandleTargets Bend(double angle = 0.9)
-{
-  HandleTargets targets;
-  targets.Motions.resize(1);
-  targets.Motions[0].RotationVector = { angle, 0.0, 0.3 * angle };
-  targets.Motions[0].Linear = cartan::RotationFromVector(targets.Motions[0].RotationVector);
-  return targets;
-}
-
-/// Splits triangle t by a point at the barycentric coordinates, given last.
-int SplitTriangle(Shape& shape, int t, const Eigen::Vector3d& weights)
-{
-  const Eigen::RowVector3i corners = shape.Faces.row(t);
-  const int added = shape.NumberOfVertices();
-  shape.Positions.conservativeResize(added + 1, 3);
-  shape.Positions.row(added) = weights[0] * shape.Positions.row(corners[0]) +
-    weights[1] * shape.Positions.row(corners[1]) + weights[2] * shape.Positions.row(corners[2]);
-  const Eigen::Index count = shape.Faces.rows();
-  shape.Faces.conservativeResize(count + 2, 3);
-  shape.Faces.row(t) << corners[0], corners[1], added;
-  shape.Faces.row(count) << corners[1], corners[2], added;
-  shape.Faces.row(count + 1) << corners[2], corners[0], added;
-  return added;
-}
-
-/// A point at `part` of the edge from a to b splits its triangles.
-void SplitEdge(Shape& shape, int a, int b, double part)
-{
-  const int added = shape.NumberOfVertices();
-  shape.Positions.conservativeResize(added + 1, 3);
-  shape.Positions.row(added) =
-    (1.0 - part) * shape.Positions.row(a) + part * shape.Positions.row(b);
-  const Eigen::Index count = shape.Faces.rows();
-  for (Eigen::Index f = 0; f < count; ++f)
-  {
-    for (int i = 0; i < 3; ++i)
-    {
-      const int from = shape.Faces(f, i);
-      const int to = shape.Faces(f, (i + 1) % 3);
-      const int apex = shape.Faces(f, (i + 2) % 3);
-      if ((from == a && to == b) || (from == b && to == a))
-      {
-        shape.Faces.row(f) << from, added, apex;
-        shape.Faces.conservativeResize(shape.Faces.rows() + 1, 3);
-        shape.Faces.row(shape.Faces.rows() - 1) << added, to, apex;
-        break;
-      }
-    }
-  }
-}
-
-/// A triangle about the middle of the tube.
-int MiddleTriangle(const Shape& shape)
-{
-  int best = 0;
-  double least = 1e9;
-  for (Eigen::Index t = 0; t < shape.Faces.rows(); ++t)
-  {
-    double height = 0.0;
-    for (int i = 0; i < 3; ++i)
-    {
-      height += shape.Positions(shape.Faces(t, i), 2) / 3.0;
-    }
-    if (std::abs(height) < least)
-    {
-      least = std::abs(height);
-      best = static_cast<int>(t);
-    }
-  }
-  return best;
-}
-
-Points Deform(const deformers::MakeDeformer& make, const HandleProblem& problem)
-{
-  DeformedSurface result;
-  make(problem, {})->Deform(Bend(), false, result, {});
-  return result.Positions;
-}
+using namespace slivers;
 
 void ExpectLikeClean(
   const Shape& clean, const Shape& spoiled, const std::string& what, double tolerance = 1e-9)
@@ -396,30 +286,6 @@ TEST(SliverRemoval, CapsOfHandlesAreNotFelt)
     const Eigen::Vector3d rest = spoiled.Positions.row(added);
     EXPECT_LT((found.row(added).transpose() - Bend().Motions[0].Linear * rest).norm(), 1e-12)
       << name;
-  }
-}
-
-TEST(SliverRemoval, OrderOfVerticesDoesNotMatter)
-{
-  // Two caps in one triangle: flipping the older one first would leave another mesh.
-  Shape caps = Tube();
-  const int middle = MiddleTriangle(caps);
-  SplitTriangle(caps, middle, { 0.499, 0.4992, 0.0018 });
-  SplitTriangle(caps, static_cast<int>(caps.Faces.rows()) - 2, { 0.498, 0.4992, 0.0028 });
-  // The first vertex, which stays, is still the first.
-  const int last = caps.NumberOfVertices() - 1;
-  Shape reversed = caps;
-  reversed.Positions.bottomRows(last) = caps.Positions.bottomRows(last).colwise().reverse().eval();
-  reversed.Faces = caps.Faces.unaryExpr([last](int v) { return v > 0 ? last + 1 - v : 0; });
-  for (const auto& [name, make] : deformers::All())
-  {
-    if (name != "SmoothedRotations") // fits one vertex after the other
-    {
-      const Points found = Deform(make, cartan::WithoutSlivers(ProblemOf(caps)));
-      const Points other = Deform(make, cartan::WithoutSlivers(ProblemOf(reversed)));
-      const auto difference = found.bottomRows(last) - other.bottomRows(last).colwise().reverse();
-      EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-9) << name;
-    }
   }
 }
 

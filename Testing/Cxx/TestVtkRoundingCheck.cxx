@@ -6,6 +6,7 @@
 #include "vtkAsRigidAsPossibleDeformation.h"
 #include "vtkHandleMotion.h"
 #include "vtkLaplacianDeformation.h"
+#include "vtkPrepareSurface.h"
 #include "vtkRotationInvariantDeformation.h"
 #include "vtkShapePreservingDeformation.h"
 
@@ -36,6 +37,16 @@ vtkSmartPointer<vtkPolyData> Fan()
   return surface;
 }
 
+std::string Joined(const std::vector<std::string>& texts)
+{
+  std::string joined;
+  for (const std::string& text : texts)
+  {
+    joined += text;
+  }
+  return joined;
+}
+
 /// The messages of a filter that turns handle 1.
 template <typename Filter>
 std::string WarningsOf(Filter* filter, vtkPolyData* surface, double angle)
@@ -48,7 +59,7 @@ std::string WarningsOf(Filter* filter, vtkPolyData* surface, double angle)
   auto log = vtktest::Observe(filter);
   filter->Update();
   EXPECT_EQ(log->Errors.size(), 0u);
-  return log->Warnings.empty() ? std::string() : log->Warnings.front();
+  return Joined(log->Warnings);
 }
 
 TEST(RoundingCheck, SaysWhereHandlesLeaveThePlaceOpen)
@@ -92,6 +103,109 @@ TEST(RoundingCheck, IsQuietWhereThePlaceIsDetermined)
   };
   expectQuiet(vtkSmartPointer<vtkRotationInvariantDeformation>::New());
   expectQuiet(vtkSmartPointer<vtkShapePreservingDeformation>::New());
+}
+
+/// The warnings of a bar of which handle 1 goes through a motion.
+std::string WarningsOfBar(vtkSurfaceDeformation* filter, vtkHandleMotion* motion)
+{
+  auto bar = vtktest::MakePolyData(shapes::Bar(3, 3, 12, { 0.6, 0.6, 2.0 }));
+  vtktest::AddHandles(
+    bar, [](const Eigen::Vector3d& p) { return p[2] < 0.4 ? 2 : (p[2] > 1.6 ? 1 : 0); });
+  filter->SetInputData(bar);
+  filter->SetHandleMotion(1, motion);
+  auto log = vtktest::Observe(filter);
+  filter->Update();
+  EXPECT_EQ(log->Errors.size(), 0u);
+  return Joined(log->Warnings);
+}
+
+TEST(RoundingCheck, SaysWhereNoRotationIsTheNearest)
+{
+  vtkNew<vtkHandleMotion> inversion;
+  inversion->SetScale(-1.0, -1.0, -1.0);
+  vtkNew<vtkRotationInvariantDeformation> filter;
+  filter->GenerateRotationVectorOn();
+  const std::string warning = WarningsOfBar(filter, inversion);
+  EXPECT_NE(warning.find("RotationVector means nothing at"), std::string::npos) << warning;
+  EXPECT_NE(warning.find(shapes::Advice("Scale handles by positive numbers, or switch "
+                                        "GenerateRotationVector off and GenerateFrameChange on.")),
+    std::string::npos)
+    << warning;
+
+  vtkNew<vtkHandleMotion> growth;
+  growth->SetScale(1.5, 1.5, 1.5);
+  vtkNew<vtkRotationInvariantDeformation> positive;
+  positive->GenerateRotationVectorOn();
+  EXPECT_EQ(WarningsOfBar(positive, growth), "");
+
+  vtkNew<vtkRotationInvariantDeformation> change;
+  change->GenerateFrameChangeOn();
+  EXPECT_EQ(WarningsOfBar(change, inversion), "");
+}
+
+TEST(RoundingCheck, SaysWhereCoordinatesHaveNoDigits)
+{
+  vtkNew<vtkHandleMotion> far;
+  far->SetTranslation(1e13, 0.0, 0.0);
+  vtkNew<vtkRotationInvariantDeformation> filter;
+  const std::string warning = WarningsOfBar(filter, far);
+  EXPECT_NE(warning.find("have no digits for its shape"), std::string::npos) << warning;
+  EXPECT_NE(warning.find(shapes::Advice("Use smaller motions.")), std::string::npos) << warning;
+
+  far->SetTranslation(1e3, 0.0, 0.0);
+  vtkNew<vtkRotationInvariantDeformation> nearer;
+  EXPECT_EQ(WarningsOfBar(nearer, far), "");
+}
+
+TEST(RoundingCheck, SaysWhereRoundingDecidesAboutThinTriangles)
+{
+  // Points as high over an edge, in parts of it, as a cap that is taken out is low.
+  shapes::Shape bar = shapes::Bar(3, 3, 12, { 0.6, 0.6, 2.0 });
+  const auto count = static_cast<int>(bar.Faces.rows());
+  std::vector<Eigen::Vector3i> faces;
+  std::vector<Eigen::Vector3d> points;
+  for (int v = 0; v < bar.NumberOfVertices(); ++v)
+  {
+    points.push_back(bar.Positions.row(v).transpose());
+  }
+  for (int t = 0; t < count; ++t)
+  {
+    // Near the diagonal of a square, which is flat.
+    Eigen::Vector3i face = bar.Faces.row(t).transpose();
+    const auto lengthOf = [&](int i, int j) { return (points[face[i]] - points[face[j]]).norm(); };
+    while (lengthOf(0, 1) < std::max(lengthOf(1, 2), lengthOf(2, 0)))
+    {
+      face = Eigen::Vector3i(face[1], face[2], face[0]);
+    }
+    const Eigen::Vector3d a = points[face[0]];
+    const Eigen::Vector3d b = points[face[1]];
+    const Eigen::Vector3d normal = (b - a).cross(points[face[2]] - a);
+    const Eigen::Vector3d up = normal.cross(b - a).normalized() * (b - a).norm();
+    const auto added = static_cast<int>(points.size());
+    points.push_back(0.5 * (a + b) + 0.05 * up);
+    faces.emplace_back(face[0], face[1], added);
+    faces.emplace_back(face[1], face[2], added);
+    faces.emplace_back(face[2], face[0], added);
+  }
+  const shapes::Shape spoiled{ shapes::ToPoints(points), shapes::ToTriangles(faces) };
+  auto surface = vtktest::MakePolyData(spoiled);
+  vtktest::AddHandles(
+    surface, [](const Eigen::Vector3d& p) { return p[2] < 0.4 ? 2 : (p[2] > 1.6 ? 1 : 0); });
+  vtkNew<vtkRotationInvariantDeformation> filter;
+  const std::string warning = WarningsOf(filter.Get(), surface, 60.0);
+  EXPECT_NE(warning.find("It decides which thin triangles the surface is solved without"),
+    std::string::npos)
+    << warning;
+  EXPECT_NE(warning.find(shapes::Advice("flip edges first (Prepare Surface, Flip Edges).")),
+    std::string::npos)
+    << warning;
+
+  vtkNew<vtkPrepareSurface> flip;
+  flip->SetInputData(surface);
+  flip->FlipEdgesOn();
+  flip->Update();
+  vtkNew<vtkRotationInvariantDeformation> after;
+  EXPECT_EQ(WarningsOf(after.Get(), flip->GetOutput(), 60.0), "");
 }
 
 TEST(RoundingCheck, EnergiesBeyondDoublePrecisionAreErrors)

@@ -315,8 +315,9 @@ TEST(SurfaceDeformation, EveryParameterMakesItRunAgain)
   vtktest::AddHandles(fixture.Good, EndHandles, "Other");
   vtktest::AddArray(fixture.Good, "Vector", 3,
     [](vtkIdType, double* value) { value[0] = value[1] = value[2] = 0.1; });
-  vtktest::AddArray(
-    fixture.Good, "Matrix", 9, [](vtkIdType, double* value) { std::fill(value, value + 9, 0.5); });
+  vtktest::AddArray(fixture.Good, "Matrix", 9,
+    [](vtkIdType, double* value)
+    { Eigen::Matrix3d::Map(value) = 0.5 * Eigen::Matrix3d::Identity(); });
   vtktest::AddArray(fixture.Good, "Weight", 1, [](vtkIdType, double* value) { *value = 2.0; });
   fixture.ExpectSuccess();
   vtkNew<vtktest::ProgressLog> progress;

@@ -2,6 +2,7 @@
 #include "Deformation/AsRigidAsPossibleDeformer.h"
 
 #include "Algebra/AndersonAcceleration.h"
+#include "Algebra/ClosestRotation.h"
 #include "Algebra/Rotation.h"
 #include "Deformation/RotationInvariantDeformer.h"
 #include "Deformation/ShapePreservingDeformer.h"
@@ -245,11 +246,11 @@ void AsRigidAsPossibleDeformer::Start(
         auto rotation = MatrixAt(this->Rotations, cell);
         if (this->HoldsRotation[cell])
         {
-          rotation = ProjectOnRotations(HandleTransform(targets, v, this->MovingHandles[v]));
+          rotation = ClosestRotationOrNone(HandleTransform(targets, v, this->MovingHandles[v]));
         }
         else if (isGuessed)
         {
-          rotation = ProjectOnRotations(MatrixAt(result.Transforms, v));
+          rotation = ClosestRotationOrNone(MatrixAt(result.Transforms, v));
         }
         else if (!startsFromPrevious)
         {

@@ -2,6 +2,7 @@
 #include "Deformation/RoundingCheck.h"
 
 #include "Algebra/Rotation.h"
+#include "Deformation/JoinedVertices.h"
 #include "Mesh/Geometry.h"
 
 #include <algorithm>
@@ -23,8 +24,25 @@ HandleProblem WithMovedPoints(HandleProblem problem)
       moved(v, c) += by * (std::ldexp(static_cast<double>(random()), -31) - 1.0);
     }
   }
+  FollowJoined(problem.JoinedWith, moved);
   problem.Rest = std::make_shared<const Points>(std::move(moved));
   return problem;
+}
+
+std::string DescribeLostDigits(const HandleProblem& problem, const DeformedSurface& result)
+{
+  const double size = BoundingDiagonal(*problem.Rest, problem.GetWhole()->GetTriangles());
+  const double farthest = (result.Positions - *problem.Rest).rowwise().norm().maxCoeff();
+  if (!(farthest > FarthestMotion * size))
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text.precision(2);
+  text << "Points move by up to " << farthest / size
+       << " times the size of the surface: their coordinates have no digits for its shape. Use "
+          "smaller motions.";
+  return text.str();
 }
 
 RoundingDifference CompareResults(const HandleProblem& problem, const DeformedSurface& result,
@@ -92,6 +110,12 @@ std::string RoundingDifference::Describe() const
   else
   {
     text << "the rotations or normals there change. ";
+  }
+  if (this->IsOfSlivers)
+  {
+    text << "It decides which thin triangles the surface is solved without: flip edges first "
+            "(Prepare Surface, Flip Edges).";
+    return text.str();
   }
   text << "The handles leave open what happens there, turn it by about half a turn against what is "
           "beside it, or crush it: hold more points, use smaller motions, or Rotation Invariant "

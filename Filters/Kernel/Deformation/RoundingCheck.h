@@ -16,8 +16,8 @@ constexpr double RoundingOfInput = 1e-12;
 /// How far they may differ, in parts of the size.
 constexpr double RoundingOfResult = 1e-5;
 
-/// The problem with other rest positions; the same mesh and riders. The same numbers
-/// on every machine.
+/// The problem with other rest positions, for everything that is found from them, such
+/// as slivers. The same numbers on every machine.
 HandleProblem WithMovedPoints(HandleProblem problem);
 
 /// What is compared beside positions: Transforms, the rotations in them, and the
@@ -33,11 +33,21 @@ struct ComparedFields
 struct RoundingDifference
 {
   IdSample Vertices;
+  /// Whether it decides which slivers are taken out (see WithoutSlivers).
+  bool IsOfSlivers = false;
   double Largest = 0.0; ///< of positions, in parts of the size
 
   /// In a sentence, with what to do; empty where there is nothing.
   std::string Describe() const;
 };
+
+/// How far points may go, in sizes of the surface: coordinates of 16 digits have seven
+/// left for its shape there.
+constexpr double FarthestMotion = 1e9;
+
+/// A sentence on a result with points farther away, with what to do; empty where there
+/// are none.
+std::string DescribeLostDigits(const HandleProblem& problem, const DeformedSurface& result);
 
 /// Compares at the vertices of the mesh with slivers.
 RoundingDifference CompareResults(const HandleProblem& problem, const DeformedSurface& result,

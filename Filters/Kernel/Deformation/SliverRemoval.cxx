@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace cartan
@@ -36,8 +37,18 @@ double CosineOfNormals(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   return product > 0.0 ? before.dot(after) / product : 1.0;
 }
 
+/// Whether a pass has changed something around a vertex.
+enum Lock : char
+{
+  Free,
+  BesideFlip,
+  BesideRemoval
+};
+
 /// Takes slivers out of a mesh, pass by pass. A pass leaves alone what touches a
-/// change that it has made already.
+/// change that it has made already. Flips touch each other when they share a
+/// triangle, so that those of a regular mesh are done all in one pass: the order of its
+/// equal edges decides nothing.
 class SliverRemoval
 {
 public:
@@ -80,7 +91,8 @@ public:
   /// else: the triangle is there again then, whatever lies beside it.
   bool Pass()
   {
-    this->IsLocked.assign(this->Mesh->NumberOfVertices(), 0);
+    this->Locks.assign(this->Mesh->NumberOfVertices(), Free);
+    this->NewEdges.clear();
     this->Changed = this->Mesh->GetTriangles();
     this->HasChanged = false;
     const std::vector<Sliver> slivers = FindSlivers(*this->Mesh, this->Rest);
@@ -129,20 +141,20 @@ private:
 
   bool IsRingLocked(int v) const
   {
-    bool isLocked = this->IsLocked[v] != 0;
+    bool isLocked = this->Locks[v] != Free;
     for (int d = this->Mesh->RingBegin(v); d < this->Mesh->RingEnd(v); ++d)
     {
-      isLocked = isLocked || this->IsLocked[this->Mesh->Neighbor(d)];
+      isLocked = isLocked || this->Locks[this->Mesh->Neighbor(d)] != Free;
     }
     return isLocked;
   }
 
   void LockRing(int v)
   {
-    this->IsLocked[v] = 1;
+    this->Locks[v] = BesideRemoval;
     for (int d = this->Mesh->RingBegin(v); d < this->Mesh->RingEnd(v); ++d)
     {
-      this->IsLocked[this->Mesh->Neighbor(d)] = 1;
+      this->Locks[this->Mesh->Neighbor(d)] = BesideRemoval;
     }
     this->HasChanged = true;
   }
@@ -164,17 +176,13 @@ private:
   void TakeOutCap(int v, int d)
   {
     const int across = this->Across(d);
-    if (this->IsRingLocked(v))
-    {
-      return;
-    }
-    if (this->Mesh->LeftTriangle(across) < 0)
-    {
-      this->LeaveOut(v, d);
-    }
-    else
+    if (this->Mesh->LeftTriangle(across) >= 0)
     {
       this->Flip(v, d, this->Mesh->Opposite(across));
+    }
+    else if (!this->IsRingLocked(v))
+    {
+      this->LeaveOut(v, d);
     }
   }
 
@@ -231,20 +239,34 @@ private:
     }
   }
 
+  bool IsAsBefore(int triangle) const
+  {
+    return this->Changed.row(triangle) == this->Mesh->GetTriangles().row(triangle);
+  }
+
   /// (v, a, b) and (b, a, apex) become (v, a, apex) and (apex, b, v).
   void Flip(int v, int d, int apex)
   {
     const int a = this->Mesh->Neighbor(d);
     const int b = this->Mesh->Neighbor(this->Mesh->NextAround(v, d));
-    if (this->IsLocked[apex] || this->AreOne(apex, v) || this->AreNeighbors(v, apex) ||
+    const int left = this->Mesh->LeftTriangle(d);
+    const int right = this->Mesh->LeftTriangle(this->Across(d));
+    const std::pair<int, int> edge = std::minmax(v, apex);
+    if (!this->IsAsBefore(left) || !this->IsAsBefore(right) || this->Locks[v] == BesideRemoval ||
+      this->Locks[apex] == BesideRemoval || this->AreOne(apex, v) || this->AreNeighbors(v, apex) ||
+      this->NewEdges.count(edge) > 0 ||
       !FlipImproves(this->At(a), this->At(b), this->At(v), this->At(apex), Flips))
     {
       return;
     }
-    this->Changed.row(this->Mesh->LeftTriangle(d)) << v, a, apex;
-    this->Changed.row(this->Mesh->LeftTriangle(this->Across(d))) << apex, b, v;
-    this->LockRing(v);
-    this->IsLocked[apex] = 1;
+    this->Changed.row(left) << v, a, apex;
+    this->Changed.row(right) << apex, b, v;
+    this->NewEdges.insert(edge);
+    this->HasChanged = true;
+    for (const int vertex : { v, a, b, apex })
+    {
+      this->Locks[vertex] = std::max(this->Locks[vertex], BesideFlip);
+    }
   }
 
   double RingLength(int v) const
@@ -400,8 +422,9 @@ private:
   std::vector<char> IsJoined; // with others; empty where all vertices are alone
   bool IsSoft;
   std::vector<char> IsFirst; // of a component, which gives it its number
-  std::vector<char> IsLocked;
-  Triangles Changed; // -1 where one goes
+  std::vector<Lock> Locks;
+  std::set<std::pair<int, int>> NewEdges; // of the flips of a pass
+  Triangles Changed;                      // -1 where one goes
   bool HasChanged = false;
   std::vector<Rider> Riders;
 };

@@ -12,27 +12,6 @@ namespace cartan
 {
 namespace
 {
-/// Of a vertex with more neighbors than this, such as the pole of a sphere,
-/// only evenly spaced ones are taken: all of them would turn every
-/// neighborhood next to it into that one fan.
-constexpr int MaximumFan = 32;
-
-/// Cosines of the turn of the normal beyond which a point is left out. In the
-/// second ring 78 degrees: what is next to a right-angled edge must not see its
-/// other side. Farther out 61, since it may be the other side of a tube; a bit
-/// more than 60, the turn between the sides of a hexagon, so that rounding
-/// decides nothing.
-constexpr double SecondRingCosine = 0.2;
-constexpr double FarCosine = 0.485;
-
-/// 37 degrees, a bit more than those between the sides of a decagon. Circles
-/// that turn farther leave their tangent so much that they seem to say more
-/// about the other direction than they do.
-constexpr double CloseCosine = 0.8;
-
-constexpr double AnyCosine = -2.0;
-constexpr double AnyDistance = std::numeric_limits<double>::infinity();
-
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
@@ -194,15 +173,15 @@ Vector9 Monomials(const Eigen::Vector3d& offset, const PlaneAxes& axes, const Se
 /// in the same place up to single precision.
 double NearQuarterSquared(const Neighborhood& neighborhood)
 {
-  std::array<double, Neighborhood::MaximumPoints> squares;
+  std::vector<double> squares;
   double farthest = 0.0;
   for (int i = 0; i < neighborhood.Size(); ++i)
   {
-    squares[i] = neighborhood.Offset(i).squaredNorm();
-    farthest = std::max(farthest, squares[i]);
+    squares.push_back(neighborhood.Offset(i).squaredNorm());
+    farthest = std::max(farthest, squares.back());
   }
-  const auto end = std::remove_if(squares.begin(), squares.begin() + neighborhood.Size(),
-    [&](double square) { return square <= 1e-12 * farthest; });
+  const auto end = std::remove_if(
+    squares.begin(), squares.end(), [&](double square) { return square <= 1e-12 * farthest; });
   const auto quarter = squares.begin() + (end - squares.begin()) / 4;
   std::nth_element(squares.begin(), quarter, end);
   return *quarter;
@@ -249,86 +228,6 @@ double SecondForm::HalfTurnSine(const Eigen::Vector3d& edge) const
   const double curvature =
     (this->Uu * u * u + 2.0 * this->Uv * u * v + this->Vv * v * v) / planarSquared;
   return 0.5 * std::abs(curvature) * edge.norm();
-}
-
-void Neighborhood::Start(int v)
-{
-  this->Ids[0] = v;
-  this->Offsets[0].setZero();
-  this->Count = 1;
-  this->AddFan(v, AnyCosine, AnyDistance);
-  this->CountWithOneRing = this->Count;
-}
-
-bool Neighborhood::IsClose(int i) const
-{
-  return i + 1 < this->CountWithOneRing || this->Cosines[i + 1] > CloseCosine;
-}
-
-void Neighborhood::AddFan(int v, double minimumCosine, double maximumSquaredDistance)
-{
-  const int step = (this->Mesh.Valence(v) + MaximumFan - 1) / MaximumFan;
-  for (int d = this->Mesh.RingBegin(v); d < this->Mesh.RingEnd(v); d += step)
-  {
-    const int w = this->Mesh.Neighbor(d);
-    const auto end = this->Ids.begin() + this->Count;
-    if (end == this->Ids.end() || std::find(this->Ids.begin(), end, w) != end)
-    {
-      continue;
-    }
-    const double cosine =
-      this->Normals ? this->Normals->row(this->Ids[0]).dot(this->Normals->row(w)) : 1.0;
-    const Eigen::Vector3d offset =
-      (this->Positions.row(w) - this->Positions.row(this->Ids[0])).transpose();
-    if (cosine > minimumCosine && offset.squaredNorm() <= maximumSquaredDistance)
-    {
-      this->Cosines[this->Count] = cosine;
-      this->Offsets[this->Count] = offset;
-      this->Ids[this->Count++] = w;
-    }
-  }
-}
-
-void Neighborhood::CollectRings(int v, int rings)
-{
-  this->Start(v);
-  int begin = 1;
-  for (int ring = 1; ring < rings || (ring < MaximumRings && this->Count <= MinimumPoints); ++ring)
-  {
-    const int end = this->Count;
-    for (; begin < end; ++begin)
-    {
-      this->AddFan(this->Ids[begin], ring == 1 ? SecondRingCosine : FarCosine, AnyDistance);
-    }
-  }
-}
-
-void Neighborhood::CollectBall(int v)
-{
-  this->CollectRings(v, 2);
-  double radius = 0.0;
-  for (int i = 1; i < this->CountWithOneRing; ++i)
-  {
-    radius = std::max(radius, this->Offsets[i].squaredNorm());
-  }
-  // Equal distances, as in a regular grid, must not be told apart by rounding.
-  radius *= 1.0001;
-  for (int i = 1; i < this->Count; ++i)
-  {
-    if (this->Offsets[i].squaredNorm() <= radius)
-    {
-      this->AddFan(this->Ids[i], FarCosine, radius);
-    }
-  }
-}
-
-void Neighborhood::CollectNearest(int v)
-{
-  this->Start(v);
-  for (int i = 1; i < this->CountWithOneRing; ++i)
-  {
-    this->AddFan(this->Ids[i], FarCosine, AnyDistance);
-  }
 }
 
 double Determination(const Neighborhood& neighborhood, const Eigen::Vector3d& normal)

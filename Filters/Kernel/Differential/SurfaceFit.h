@@ -3,8 +3,8 @@
 
 #include "Mesh/TriangleMesh.h"
 
-#include <array>
 #include <limits>
+#include <vector>
 
 namespace cartan
 {
@@ -44,8 +44,10 @@ public:
   /// than that let the fit average.
   static constexpr int MinimumPoints = 12;
 
-  /// Bounds the work at vertices with many neighbors and on very anisotropic
-  /// triangles. Twice as many have not made any error of our tests smaller.
+  /// No ring is begun beyond as many points, which bounds the work at vertices with
+  /// many neighbors and on very anisotropic triangles. Twice as many have not made
+  /// any error of our tests smaller. A ring that is begun is completed: the order of
+  /// the points decides nothing.
   static constexpr int MaximumPoints = 64;
 
   /// Neighborhoods of too few points, or of points that leave the form open,
@@ -75,7 +77,7 @@ public:
   void CollectNearest(int v);
 
   /// Without the vertex itself.
-  int Size() const { return this->Count - 1; }
+  int Size() const { return this->Count() - 1; }
 
   /// The i-th point, and the way to it from the vertex.
   int Vertex(int i) const { return this->Ids[i + 1]; }
@@ -91,14 +93,16 @@ public:
 private:
   void Start(int v);
   void AddFan(int v, double minimumCosine, double maximumSquaredDistance);
+  int NearestInFan(int v) const;
+  int Count() const { return static_cast<int>(this->Ids.size()); }
+  bool IsFull() const { return this->Count() > MaximumPoints; }
 
   const TriangleMesh& Mesh;
   const Points& Positions;
   const Points* Normals;
-  std::array<int, MaximumPoints + 1> Ids;
-  std::array<Eigen::Vector3d, MaximumPoints + 1> Offsets;
-  std::array<double, MaximumPoints + 1> Cosines; // of the turn of the normal
-  int Count = 0;
+  std::vector<int> Ids;
+  std::vector<Eigen::Vector3d> Offsets;
+  std::vector<double> Cosines; // of the turn of the normal
   int CountWithOneRing = 0;
 };
 
