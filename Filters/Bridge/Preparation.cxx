@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Bridge/Preparation.h"
 
-#include "Bridge/PointArrays.h"
-#include "Kernel/Algebra/Rotation.h"
-
 namespace cartan
 {
 namespace

@@ -277,7 +277,7 @@ int NumberOfOthers(const std::string& filter, Random& random)
   {
     return random.Chance(0.8) ? 1 : random.Integer(2, 4);
   }
-  if (filter == "CurvatureError")
+  if (filter == "CurvatureError" || filter == "DifferentialReconstruction")
   {
     return random.Integer(0, 1);
   }

@@ -28,16 +28,20 @@ bool IsComparable(const Field& field, const Relation& relation)
 {
   // Of bodies that enclose next to nothing, rounding decides which side is outside.
   if (field.Name.find("CurvatureDirection") != std::string::npos ||
-    field.Name.find("StretchDirection") != std::string::npos || field.Name == "ReversedComponents")
+    field.Name.find("StretchDirection") != std::string::npos ||
+    field.Name == "ReversedComponents" || field.IsArbitrary)
   {
     return false;
   }
   const bool isReordered = !relation.Order.empty();
-  if (isReordered && (field.Where == Field::OfCells || field.Where == Field::OfTable))
+  if (isReordered &&
+    (field.Where == Field::OfCells ||
+      (field.Where == Field::OfTable && field.Name != "Eigenvalue")))
   {
     return false;
   }
-  if (isReordered && field.Name.compare(0, 12, "FrameTangent") == 0)
+  // Anchors are numbered in the order of points where handles are.
+  if (isReordered && (field.Name.compare(0, 12, "FrameTangent") == 0 || field.Name == "Anchor"))
   {
     return false;
   }

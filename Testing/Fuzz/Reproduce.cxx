@@ -114,6 +114,14 @@ void PrintInputs(std::ostream& out, const Case& of)
         << "    filter.SetInputData(0, surfaces[0])\n"
         << "    filter.SetInputConnection(1, forms.GetOutputPort(1))\n";
   }
+  else if (of.Filter == "DifferentialReconstruction")
+  {
+    out << "    made = vtkDifferentialCoordinates()\n    made.SetInputData(surfaces[-1])\n"
+        << "    made.SetLaplacianWeights(" << static_cast<int>(of.Get("LaplacianWeights", 1.0))
+        << ")\n    made.SetNormalization(" << static_cast<int>(of.Get("Normalization", 2.0))
+        << ")\n    made.Update()\n    made.GetOutput().SetPoints(surfaces[0].GetPoints())\n"
+        << "    filter.SetInputData(0, made.GetOutput())\n";
+  }
   else if (of.Filter == "RestoreSurface")
   {
     out << "    prepare = vtkPrepareSurface()\n    prepare.SetInputData(surfaces[0])\n"

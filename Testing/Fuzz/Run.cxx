@@ -7,6 +7,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDifferentialCoordinates.h"
 #include "vtkDiscreteForms.h"
 #include "vtkHandleMotion.h"
 #include "vtkIdList.h"
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <set>
 
 namespace fuzz
 {
@@ -71,6 +73,26 @@ vtkSmartPointer<vtkDataObject> FormsOf(vtkPolyData* surface)
   return forms->GetFormsTable();
 }
 
+/// The surface with the differential coordinates of Others[0], or else its own.
+vtkSmartPointer<vtkDataObject> WithCoordinates(
+  const Case& of, const std::vector<vtkSmartPointer<vtkPolyData>>& inputs)
+{
+  vtkNew<vtkDifferentialCoordinates> coordinates;
+  const auto log = Observe(coordinates);
+  coordinates->SetInputData(inputs.back());
+  coordinates->SetLaplacianWeights(static_cast<int>(of.Get("LaplacianWeights", 1.0)));
+  coordinates->SetNormalization(static_cast<int>(of.Get("Normalization", 2.0)));
+  coordinates->Update();
+  if (!log->Errors.empty())
+  {
+    return inputs[0];
+  }
+  auto surface = vtkSmartPointer<vtkPolyData>::New();
+  surface->ShallowCopy(coordinates->GetOutput());
+  surface->SetPoints(inputs[0]->GetPoints());
+  return surface;
+}
+
 /// The prepared surface, moved as Others[0] says.
 vtkSmartPointer<vtkPolyData> PreparedAndMoved(vtkPolyData* surface, const Case& of)
 {
@@ -116,6 +138,10 @@ void Connect(
   else if (of.Filter == "FrameReconstruction")
   {
     filter->SetInputDataObject(1, FormsOf(inputs[0]));
+  }
+  else if (of.Filter == "DifferentialReconstruction")
+  {
+    filter->SetInputDataObject(0, WithCoordinates(of, inputs));
   }
   else if (of.Filter == "RestoreSurface")
   {
@@ -173,6 +199,13 @@ Field Describe(const std::string& name)
     { "FrameTangent1", { Kind::Vector, 0 } },
     { "FrameTangent2", { Kind::Vector, 0 } },
     { "FrameNormal", { Kind::Vector, 0 } },
+    { "DifferentialCoordinates", { Kind::Vector, 1 } },
+    { "ApproximationError", { Kind::Scalar, 1 } },
+    { "RootMeanSquareError", { Kind::Scalar, 1 } },
+    { "MaximumError", { Kind::Scalar, 1 } },
+    { "VisualError", { Kind::Scalar, 1 } },
+    { "VisualErrorRMS", { Kind::Scalar, 1 } },
+    { "VisualErrorMax", { Kind::Scalar, 1 } },
     { "Length", { Kind::Scalar, 1 } },
     { "Height", { Kind::Scalar, 1 } },
   };
@@ -184,6 +217,51 @@ Field Describe(const std::string& name)
     std::tie(field.Type, field.Power) = found->second;
   }
   return field;
+}
+
+/// Sums of uniform and cotangent weights are lengths, mean value weights have the unit
+/// 1 / length; an area divides them, or the sum of the weights.
+double PowerOfCoordinates(const Case& of)
+{
+  const double normalization = of.Get("Normalization", 2.0);
+  const double ofSum = of.Get("LaplacianWeights", 1.0) >= 2.0 ? 0.0 : 1.0;
+  return normalization <= 0.0 ? 1.0 : normalization >= 2.0 ? ofSum - 2.0 : ofSum;
+}
+
+/// Whether the first n modes span a space: the next one has another frequency.
+bool IsSpace(const Eigen::MatrixXd& eigenvalues, double n)
+{
+  const auto count = static_cast<Eigen::Index>(n);
+  const Eigen::Index all = eigenvalues.rows();
+  return count <= 0 ||
+    (count < all && eigenvalues(count) - eigenvalues(count - 1) > 1e-6 * eigenvalues(all - 1));
+}
+
+/// Modes of one frequency are any basis of their space, and so are their coefficients and
+/// a sum of some of them.
+void MarkArbitrary(const Case& of, std::vector<Field>& fields)
+{
+  static const std::set<std::string> ofModes = { "Modes", "X", "Y", "Z", "Energy" };
+  const auto eigenvalues = std::find_if(
+    fields.begin(), fields.end(), [](const Field& field) { return field.Name == "Eigenvalue"; });
+  if (eigenvalues == fields.end() || eigenvalues->Values.rows() == 0)
+  {
+    return;
+  }
+  const double approximation = of.Get("Approximation", 1.0);
+  const double asked = of.Get("ApproximationModes", 0.0);
+  const auto all = static_cast<double>(eigenvalues->Values.rows());
+  const double last = asked <= 0.0 || asked > all ? all : asked;
+  const bool isWhole = approximation <= 0.0 ||
+    (IsSpace(eigenvalues->Values, last) &&
+      (approximation != 2.0 ||
+        IsSpace(eigenvalues->Values, std::min(of.Get("FirstMode", 1.0), last))));
+  eigenvalues->Power = of.Get("Operator", 0.0) >= 1.0 ? -2.0 : 0.0;
+  for (Field& field : fields)
+  {
+    field.IsArbitrary = ofModes.count(field.Name) > 0 ||
+      (!isWhole && (field.Name == "Points" || field.Name == "Normals"));
+  }
 }
 
 bool SameArray(vtkAbstractArray* a, vtkAbstractArray* b)
@@ -218,7 +296,7 @@ void Collect(
   }
 }
 
-std::vector<Field> FieldsOf(const Outcome& outcome, vtkPolyData* input)
+std::vector<Field> FieldsOf(const Case& of, const Outcome& outcome, vtkPolyData* input)
 {
   std::vector<Field> fields;
   vtkPolyData* output = outcome.Surface;
@@ -234,6 +312,15 @@ std::vector<Field> FieldsOf(const Outcome& outcome, vtkPolyData* input)
   {
     Collect(outcome.Table->GetRowData(), nullptr, Field::OfTable, fields);
   }
+  for (Field& field : fields)
+  {
+    if (field.Name == "DifferentialCoordinates")
+    {
+      field.Power = PowerOfCoordinates(of);
+      field.IsArbitrary = of.Filter == "DifferentialReconstruction"; // its input
+    }
+  }
+  MarkArbitrary(of, fields);
   return fields;
 }
 
@@ -335,7 +422,7 @@ Outcome Run(const Case& of, const Case* before)
   outcome.Table = filter->GetNumberOfOutputPorts() > 1
     ? vtkTable::SafeDownCast(filter->GetOutputDataObject(1))
     : nullptr;
-  outcome.Fields = FieldsOf(outcome, inputs[0]);
+  outcome.Fields = FieldsOf(of, outcome, inputs[0]);
   return outcome;
 }
 }

@@ -21,7 +21,8 @@ struct Field
   Place Where = OfPoints;
   Kind Type = Kind::Scalar;
   double Power = 0.0;
-  Eigen::MatrixXd Values; ///< a row per point, cell or row
+  Eigen::MatrixXd Values;   ///< a row per point, cell or row
+  bool IsArbitrary = false; ///< others are as right, such as a basis of a space
 };
 
 struct Outcome

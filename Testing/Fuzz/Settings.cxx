@@ -3,9 +3,14 @@
 
 #include "vtkAsRigidAsPossibleDeformation.h"
 #include "vtkCurvatureError.h"
+#include "vtkDifferentialCoordinates.h"
+#include "vtkDifferentialReconstruction.h"
 #include "vtkDiscreteForms.h"
 #include "vtkFrameReconstruction.h"
+#include "vtkHighPassQuantization.h"
 #include "vtkLaplacianDeformation.h"
+#include "vtkLaplacianSpectrum.h"
+#include "vtkLeastSquaresMesh.h"
 #include "vtkMarkHandle.h"
 #include "vtkMultiresolutionDeformation.h"
 #include "vtkPoissonDeformation.h"
@@ -70,6 +75,13 @@ Draw Real(double low, double high)
     const double margin = random.Chance(0.03) ? 0.2 * (high - low) : 0.0;
     return { random.Real(low - margin, high + margin) };
   };
+}
+
+/// Evenly in the logarithm.
+Draw Logarithmic(double low, double high)
+{
+  return [low, high](Random& random, const Mesh&) -> std::vector<double>
+  { return { random.Log(low, high) }; };
 }
 
 /// A part of the size of the surface.
@@ -145,9 +157,7 @@ Parameters PrepareParameters()
   return { Make("MergePoints", &Class::SetMergePoints, Flag()),
     Make("MergeInnerPoints", &Class::SetMergeInnerPoints, Flag()),
     // Relative: without a unit.
-    Make("Tolerance", &Class::SetTolerance,
-      [](Random& random, const Mesh&) -> std::vector<double>
-      { return { random.Log(1e-9, 1e-1) }; }),
+    Make("Tolerance", &Class::SetTolerance, Logarithmic(1e-9, 1e-1)),
     Make("AverageMergedArrays", &Class::SetAverageMergedArrays, Flag()),
     Make("DropDoubledTriangles", &Class::SetDropDoubledTriangles, Flag()),
     Make("OrientConsistently", &Class::SetOrientConsistently, Flag()),
@@ -219,6 +229,49 @@ Parameters MarkParameters()
       Make("Overwrite", &Class::SetOverwrite, Flag()) });
 }
 
+Parameters DifferentialParameters()
+{
+  using Class = vtkDifferentialFilter;
+  return { Make("LaplacianWeights", &Class::SetLaplacianWeights, Integer(0, 2)),
+    Make("Normalization", &Class::SetNormalization, Integer(0, 2)) };
+}
+
+Parameters ReconstructionParameters()
+{
+  using Class = vtkDifferentialReconstruction;
+  return With(DifferentialParameters(),
+    { Make("AnchorMode", &Class::SetAnchorMode, Integer(0, 2)),
+      Make("ConstraintWeight", &Class::SetConstraintWeight, Logarithmic(1e-2, 1e3)) });
+}
+
+Parameters SpectrumParameters()
+{
+  using Class = vtkLaplacianSpectrum;
+  return { Make("Operator", &Class::SetOperator, Integer(0, 1)),
+    Make("NumberOfModes", &Class::SetNumberOfModes, Integer(1, 40)),
+    Make("Approximation", &Class::SetApproximation, Integer(0, 3)),
+    Make("ApproximationModes", &Class::SetApproximationModes, Integer(0, 40)),
+    Make("FirstMode", &Class::SetFirstMode, Integer(0, 10)),
+    Make("GenerateModes", &Class::SetGenerateModes, Flag()) };
+}
+
+Parameters LeastSquaresParameters()
+{
+  using Class = vtkLeastSquaresMesh;
+  return { Make("AnchorSelection", &Class::SetAnchorSelection, Integer(0, 2)),
+    Make("NumberOfAnchors", &Class::SetNumberOfAnchors, Integer(1, 40)),
+    Make("GenerateBasisFunctions", &Class::SetGenerateBasisFunctions, Flag()) };
+}
+
+Parameters QuantizationParameters()
+{
+  using Class = vtkHighPassQuantization;
+  return { Make("Bits", &Class::SetBits, Integer(1, 16)),
+    Make("NumberOfAnchors", &Class::SetNumberOfAnchors, Integer(1, 40)),
+    Make("MaximumError", &Class::SetMaximumError, Logarithmic(1e-6, 1e-1)),
+    Make("VisualErrorAlpha", &Class::SetVisualErrorAlpha, Real(0.0, 1.0)) };
+}
+
 /// Filters, each with what makes it and what can be set.
 struct Entry
 {
@@ -242,15 +295,21 @@ const std::map<std::string, Entry>& Entries()
     { "CurvatureError",
       MakeEntry<vtkCurvatureError>(
         { Make("ComputeDirections", &vtkCurvatureError::SetComputeDirections, Flag()) }) },
+    { "DifferentialCoordinates", MakeEntry<vtkDifferentialCoordinates>(DifferentialParameters()) },
+    { "DifferentialReconstruction",
+      MakeEntry<vtkDifferentialReconstruction>(ReconstructionParameters()) },
     { "DiscreteForms", MakeEntry<vtkDiscreteForms>({}) },
     { "FrameReconstruction",
       MakeEntry<Forms>({ Make("SeedPoint", &Forms::SetSeedPoint, Integer(0, 40)),
         Make("TransitionMethod", &Forms::SetTransitionMethod, Integer(0, 1)),
         Make("ProjectFrames", &Forms::SetProjectFrames, Flag()) }) },
+    { "HighPassQuantization", MakeEntry<vtkHighPassQuantization>(QuantizationParameters()) },
     { "LaplacianDeformation",
       MakeEntry<vtkLaplacianDeformation>(With(DeformationParameters(),
         { Make("Rotations", &vtkLaplacianDeformation::SetRotations, Integer(0, 2)),
           Make("Rounds", &vtkLaplacianDeformation::SetRounds, Integer(1, 8)) })) },
+    { "LaplacianSpectrum", MakeEntry<vtkLaplacianSpectrum>(SpectrumParameters()) },
+    { "LeastSquaresMesh", MakeEntry<vtkLeastSquaresMesh>(LeastSquaresParameters()) },
     { "MarkHandle", MakeEntry<vtkMarkHandle>(MarkParameters()) },
     { "MultiresolutionDeformation",
       MakeEntry<vtkMultiresolutionDeformation>(With(DeformationParameters(),
