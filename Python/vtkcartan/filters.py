@@ -16,7 +16,8 @@ def deformation_class(method):
     """The class of a deformation method: ShapePreserving is vtkShapePreservingDeformation."""
     names = [name[3:-len("Deformation")] for name in dir(vtkCartan)
              if name.startswith("vtk") and name.endswith("Deformation")]
-    methods = [name for name in names if name not in ("Surface", "Frame")]  # their bases
+    # Without their bases, and what follows a curve instead of handles.
+    methods = [name for name in names if name not in ("Surface", "Frame", "Curve")]
     if method not in methods:
         raise ValueError(f"There is no method {method!r}: choose one of {', '.join(methods)}.")
     return getattr(vtkCartan, f"vtk{method}Deformation")
