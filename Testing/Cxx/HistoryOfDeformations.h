@@ -5,6 +5,7 @@
 
 #include "vtkAsRigidAsPossibleDeformation.h"
 #include "vtkCurveDeformation.h"
+#include "vtkExampleBasedDeformation.h"
 #include "vtkHandleMotion.h"
 #include "vtkLaplacianDeformation.h"
 #include "vtkMultiresolutionDeformation.h"
@@ -168,6 +169,27 @@ inline Subject Curve()
       Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "None", "Weight" }) });
 }
 
+/// WarmStart depends on the way by its definition.
+inline Subject ExampleBased()
+{
+  using Filter = vtkExampleBasedDeformation;
+  const Choice examples = { 6,
+    [](vtkAlgorithm* filter, int value, Surfaces& surfaces)
+    {
+      auto* deformation = static_cast<Filter*>(filter);
+      deformation->RemoveAllExamples();
+      deformation->AddExampleData(surfaces[value % 4]);
+      if (value > 3)
+      {
+        deformation->AddExampleData(surfaces[2]);
+      }
+    } };
+  return Make<Filter>("ExampleBased",
+    DeformationChoices<Filter>({ examples,
+      Of<Filter>(2, [](Filter* f, int value) { f->SetMaximumIterations(20 - 10 * value); }),
+      Number<Filter>(&Filter::SetTolerance, { 1e-6, 1e-2 }) }));
+}
+
 inline std::vector<Subject> DeformationSubjects()
 {
   using RotationInvariant = vtkRotationInvariantDeformation;
@@ -196,6 +218,7 @@ inline std::vector<Subject> DeformationSubjects()
     AsRigidAsPossible(),
     Volumetric(),
     Curve(),
+    ExampleBased(),
   };
 }
 }

@@ -13,7 +13,7 @@ FILTERS = {
     "DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",
     "LeastSquaresMesh", "HighPassQuantization", "SpectralWatermark",
     "BoundaryLoops", "MeshMerge", "CoatingTransfer", "LandmarkHandles", "CarryAlong",
-    "VolumetricDeformation", "CurveDeformation",
+    "VolumetricDeformation", "CurveDeformation", "ExampleBasedDeformation",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 

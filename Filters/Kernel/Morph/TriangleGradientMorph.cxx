@@ -3,204 +3,12 @@
 
 #include "Algebra/Rotation.h"
 #include "Differential/Laplacian.h"
-#include "Mesh/TriangleShape.h"
+#include "Differential/TriangleFeatures.h"
 
 #include <array>
-#include <queue>
-#include <tuple>
 
 namespace cartan
 {
-namespace
-{
-/// The corners of each triangle as the columns of a matrix, about its center:
-/// #T x 9.
-Matrices TriangleCorners(const TriangleMesh& mesh, const Points& positions)
-{
-  Matrices corners(mesh.NumberOfTriangles(), 9);
-  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    auto triangle = MatrixAt(corners, t);
-    for (int corner = 0; corner < 3; ++corner)
-    {
-      triangle.col(corner) = positions.row(mesh.GetTriangles()(t, corner)).transpose();
-    }
-    const Eigen::Vector3d center = triangle.rowwise().mean();
-    triangle.colwise() -= center;
-  }
-  return corners;
-}
-
-/// Two edges and the unit normal; zero for a triangle without area.
-Eigen::Matrix3d Basis(const Eigen::Ref<const Eigen::Matrix3d>& corners)
-{
-  Eigen::Matrix3d basis;
-  basis.col(0) = corners.col(1) - corners.col(0);
-  basis.col(1) = corners.col(2) - corners.col(0);
-  const Eigen::Vector3d twiceArea = basis.col(0).cross(basis.col(1));
-  if (!HasArea(
-        twiceArea.norm(), LongestEdgeSquared(corners.col(0), corners.col(1), corners.col(2))))
-  {
-    return Eigen::Matrix3d::Zero();
-  }
-  basis.col(2) = twiceArea.normalized();
-  return basis;
-}
-
-/// The rotation of the map that takes each triangle of `from` to that of `to`,
-/// both #T x 9, after `to` has been turned, component by component, so that their
-/// mean is the identity; zero where one triangle has no area. Throws
-/// Error(BadInput) for components without any.
-Matrices TriangleRotations(const TriangleMesh& mesh, const Matrices& from, Matrices& to)
-{
-  Matrices rotations(mesh.NumberOfTriangles(), 9);
-  std::vector<Eigen::Matrix3d> means(mesh.NumberOfComponents(), Eigen::Matrix3d::Zero());
-  std::vector<char> hasTriangle(mesh.NumberOfComponents(), 0);
-  const auto componentOf = [&mesh](int t) { return mesh.Component(mesh.GetTriangles()(t, 0)); };
-  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    const Eigen::Matrix3d source = Basis(MatrixAt(from, t));
-    const Eigen::Matrix3d target = Basis(MatrixAt(to, t));
-    rotations.row(t).setZero();
-    if (!source.isZero(0.0) && !target.isZero(0.0))
-    {
-      MatrixAt(rotations, t) = ProjectOnRotations(target * source.inverse());
-      means[componentOf(t)] += MatrixAt(rotations, t);
-      hasTriangle[componentOf(t)] = 1;
-    }
-  }
-  IdSample flat;
-  for (std::size_t c = 0; c < means.size(); ++c)
-  {
-    if (!hasTriangle[c])
-    {
-      flat.Add(static_cast<long long>(c));
-    }
-    means[c] = ProjectOnRotations(means[c]);
-  }
-  if (!flat.IsEmpty())
-  {
-    throw Error(ErrorCode::BadInput,
-      "The surface has " + flat.Describe("component", "components") +
-        " in which no triangle has an area in both of two key frames: remove such components, or "
-        "choose another method.");
-  }
-  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    const Eigen::Matrix3d back = means[componentOf(t)].transpose();
-    MatrixAt(rotations, t) = (back * MatrixAt(rotations, t)).eval();
-    MatrixAt(to, t) = (back * MatrixAt(to, t)).eval();
-  }
-  return rotations;
-}
-
-/// Orthonormal frames of the triangles, the first axis along the first edge, the
-/// last along the normal; the identity where there is no area: #T x 9.
-Matrices TriangleFrames(const TriangleMesh& mesh, const Matrices& corners)
-{
-  Matrices frames(mesh.NumberOfTriangles(), 9);
-  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    const Eigen::Matrix3d basis = Basis(MatrixAt(corners, t));
-    auto frame = MatrixAt(frames, t);
-    frame.setIdentity();
-    if (!basis.isZero(0.0))
-    {
-      frame.col(0) = basis.col(0).normalized();
-      frame.col(2) = basis.col(2);
-      frame.col(1) = basis.col(2).cross(frame.col(0));
-    }
-  }
-  return frames;
-}
-
-/// The triangles across the edges of one; -1 at the boundary.
-Eigen::Vector3i NeighborTriangles(const TriangleMesh& mesh, int t)
-{
-  Eigen::Vector3i neighbors;
-  for (int corner = 0; corner < 3; ++corner)
-  {
-    int d = mesh.RingBegin(mesh.GetTriangles()(t, corner));
-    while (mesh.LeftTriangle(d) != t)
-    {
-      ++d;
-    }
-    neighbors[corner] = mesh.LeftTriangle(mesh.Twin(d));
-  }
-  return neighbors;
-}
-
-/// The triangle of each component that has the shortest of `vectors`, among those
-/// with a rotation: #components.
-std::vector<int> LeastTurned(
-  const TriangleMesh& mesh, const Matrices& rotations, const Points& vectors)
-{
-  std::vector<int> least(mesh.NumberOfComponents(), -1);
-  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    int& ofComponent = least[mesh.Component(mesh.GetTriangles()(t, 0))];
-    if (!rotations.row(t).isZero(0.0) &&
-      (ofComponent < 0 || vectors.row(t).norm() < vectors.row(ofComponent).norm()))
-    {
-      ofComponent = t;
-    }
-  }
-  return least;
-}
-
-/// Rotation vectors that mean `rotations` (#T x 9) and are near to those of
-/// neighbors: #T x 3. Spreads from the least turned triangle of each component
-/// over the most alike neighbors first. Triangles without a rotation take their
-/// neighbor's.
-Points ConsistentVectors(const TriangleMesh& mesh, const Matrices& rotations)
-{
-  const int numberOfTriangles = mesh.NumberOfTriangles();
-  Points vectors = Points::Zero(numberOfTriangles, 3);
-  for (int t = 0; t < numberOfTriangles; ++t)
-  {
-    if (!rotations.row(t).isZero(0.0))
-    {
-      vectors.row(t) = VectorFromRotation(MatrixAt(rotations, t)).transpose();
-    }
-  }
-  // How far apart, the triangle, the neighbor it takes its branch from.
-  using Step = std::tuple<double, int, int>;
-  std::priority_queue<Step, std::vector<Step>, std::greater<>> queue;
-  std::vector<char> isDone(numberOfTriangles, 0);
-  const auto nearTo = [&](int t, const Eigen::Vector3d& guess)
-  {
-    return rotations.row(t).isZero(0.0) ? guess : VectorFromRotation(MatrixAt(rotations, t), guess);
-  };
-  const auto settle = [&](int t)
-  {
-    isDone[t] = 1;
-    const Eigen::Vector3d vector = vectors.row(t);
-    for (const int neighbor : NeighborTriangles(mesh, t))
-    {
-      if (neighbor >= 0 && !isDone[neighbor])
-      {
-        queue.emplace((nearTo(neighbor, vector) - vector).norm(), neighbor, t);
-      }
-    }
-  };
-  for (const int seed : LeastTurned(mesh, rotations, vectors))
-  {
-    settle(seed);
-    while (!queue.empty())
-    {
-      const auto [distance, t, from] = queue.top();
-      queue.pop();
-      if (!isDone[t])
-      {
-        vectors.row(t) = nearTo(t, vectors.row(from).transpose()).transpose();
-        settle(t);
-      }
-    }
-  }
-  return vectors;
-}
-}
-
 TriangleGradientMorph::TriangleGradientMorph(const KeyFrames& keys, const ExecutionContext& context)
   : Mesh(keys.Mesh)
 {
@@ -217,25 +25,18 @@ TriangleGradientMorph::TriangleGradientMorph(const KeyFrames& keys, const Execut
   {
     const Points& positions = keys.Positions[k];
     weights += CornerWeights(mesh, positions, LaplacianWeights::Cotangent, context) / numberOfKeys;
-    Matrices local = TriangleCorners(mesh, positions);
+    TriangleFeatures features;
     if (k > 0)
     {
-      const Matrices rotations = TriangleRotations(mesh, rest, local);
-      const Points consistent = ConsistentVectors(mesh, rotations);
-      for (int t = 0; t < numberOfTriangles; ++t)
-      {
-        const Eigen::Vector3d vector = consistent.row(t);
-        MatrixAt(local, t) = (RotationFromVector(-vector) * MatrixAt(local, t)).eval();
-        vectors.block<3, 1>(3 * static_cast<Eigen::Index>(t), k) =
-          MatrixAt(this->Frames, t).transpose() * vector;
-      }
+      features = FeaturesOf(mesh, rest, this->Frames, positions, MeanRotation::OfComponents);
+      vectors.col(k) =
+        Eigen::Map<const Eigen::VectorXd>(features.Vectors.data(), features.Vectors.size());
     }
-    // In the triangles' own frames, so that turning the key frames changes no
-    // number.
-    for (int t = 0; t < numberOfTriangles; ++t)
+    else
     {
-      MatrixAt(local, t) = (MatrixAt(this->Frames, t).transpose() * MatrixAt(local, t)).eval();
+      features.Corners = InFrames(this->Frames, rest);
     }
+    const Matrices& local = features.Corners;
     corners.col(k) = Eigen::Map<const Eigen::VectorXd>(local.data(), local.size());
     context.Report((k + 1.0) / (numberOfKeys + 1.0));
   }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Advice.h"
+
+#include "vtkExampleBasedDeformation.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace
+{
+using vtktest::Advice;
+using vtktest::Advised;
+using vtktest::MarkedBar;
+
+/// The surface bent about an axis along x, more with z, by up to `angle` radians.
+vtkSmartPointer<vtkPolyData> Bent(vtkPolyData* surface, double angle)
+{
+  auto bent = vtktest::CopyOf(surface);
+  for (vtkIdType v = 0; v < bent->GetNumberOfPoints(); ++v)
+  {
+    const Eigen::Vector3d p(surface->GetPoint(v));
+    const double part = std::clamp((p[2] - 0.6) / 2.8, 0.0, 1.0) * angle;
+    const double radius = 2.8 / angle;
+    const double beyond = p[2] - 0.6 - radius * part;
+    bent->GetPoints()->SetPoint(v, p[0],
+      radius - (radius - p[1]) * std::cos(part) + beyond * std::sin(part),
+      0.6 + (radius - p[1]) * std::sin(part) + beyond * std::cos(part));
+  }
+  bent->Modified();
+  return bent;
+}
+
+/// The surface with the array "Target": where its points are in a pose.
+vtkSmartPointer<vtkPolyData> WithTargets(vtkPolyData* surface, vtkPolyData* pose)
+{
+  auto copy = vtktest::CopyOf(surface);
+  vtktest::AddArray(
+    copy, "Target", 3, [pose](vtkIdType v, double* target) { pose->GetPoint(v, target); });
+  return copy;
+}
+
+TEST(ExampleBasedDeformation, ReachesExamplesAndTellsTheirWeights)
+{
+  for (const int precision : { VTK_DOUBLE, VTK_FLOAT })
+  {
+    const auto bar = vtktest::MakePolyData(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 }), precision);
+    vtktest::MarkEnds(bar, 0.6, 3.4);
+    const auto bent = Bent(bar, 1.2);
+    Advised<vtkExampleBasedDeformation> filter;
+    filter->AddExampleData(bent);
+    filter->AddExampleData(Bent(bar, -0.5));
+    filter->SetTargetPositionArrayName("Target");
+    filter->SetInputData(WithTargets(bar, bent));
+    const auto result = filter.Works();
+    EXPECT_LT((vtktest::PointsOf(result) - vtktest::PointsOf(bent)).cwiseAbs().maxCoeff(), 2e-6);
+    auto* weights =
+      vtkDoubleArray::SafeDownCast(result->GetFieldData()->GetArray("ExampleWeights"));
+    ASSERT_TRUE(weights);
+    ASSERT_EQ(weights->GetNumberOfTuples(), 2);
+    EXPECT_EQ(filter->GetExampleWeights()->GetNumberOfTuples(), 2);
+    EXPECT_EQ(filter->GetExampleWeights()->GetValue(0), weights->GetValue(0));
+    EXPECT_LT(filter->GetSpanDistance(), 1e-6);
+    EXPECT_TRUE(filter->GetConverged());
+    EXPECT_EQ(filter->GetNumberOfFactorizations(), 1);
+    // Another pose needs no factorization, with a warm start neither.
+    for (const bool isWarm : { false, true })
+    {
+      filter->SetWarmStart(isWarm);
+      filter->SetTargetPositionArrayName("");
+      filter->SetHandleMotion(2, vtktest::Turn(isWarm ? 10.0 : 20.0));
+      const auto turned = filter.Works();
+      vtktest::ExpectEnds(
+        turned, bar, vtktest::Turn(isWarm ? 10.0 : 20.0), precision == VTK_FLOAT ? 1e-6 : 1e-9);
+      EXPECT_GT(filter->GetNumberOfIterations(), 0);
+    }
+    EXPECT_LE(filter->GetNumberOfFactorizations(), 2);
+  }
+  std::ostringstream text;
+  vtkNew<vtkExampleBasedDeformation> filter;
+  filter->Print(text);
+  EXPECT_NE(text.str().find("SpanDistance: 0"), std::string::npos);
+}
+
+TEST(ExampleBasedDeformation, NeedsExamplesOfTheSameCells)
+{
+  const auto bar = MarkedBar();
+  Advised<vtkExampleBasedDeformation> filter;
+  filter->SetInputData(bar);
+  filter->SetHandleMotion(2, vtktest::Turn(20.0));
+  filter.Refuses(
+    { "There are no examples", Advice("connect other poses of the surface (Examples).") });
+  filter->AddExampleData(Bent(bar, 1.0));
+  filter.Works();
+  const auto other = vtktest::MakePolyData(shapes::Bar(2, 2, 9, { 1.0, 1.0, 4.0 }));
+  filter->AddExampleData(other);
+  filter.Refuses({ "example 1", Advice("give the same points and cells in the same order.") });
+  EXPECT_EQ(filter->GetExampleWeights()->GetNumberOfTuples(), 0);
+  filter->RemoveAllExamples();
+  filter->AddExampleData(Bent(bar, 1.0));
+  filter.Works();
+  filter->ConstrainHandlePositionsOff();
+  filter.Refuses({ "turn ConstrainHandlePositions on" });
+  filter->ConstrainHandlePositionsOn();
+  filter.Works();
+}
+}
