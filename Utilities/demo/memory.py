@@ -10,7 +10,12 @@ import ctypes
 import os
 import sys
 
+import numpy
 import vtkcartan
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_ID_TYPE
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonExecutionModel import vtkTrivialProducer
 
 import scan
 
@@ -65,6 +70,22 @@ def morph(method, marked, bent):
     return filter
 
 
+def opened(source):
+    """The surface without the triangles of its first point."""
+    surface = source.GetOutput()
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    kept = corners[(corners != corners[0, 0]).all(axis=1)]
+    cells = vtkCellArray()
+    cells.SetData(3, numpy_to_vtk(kept.astype(numpy.int64).ravel(), deep=True,
+                                  array_type=VTK_ID_TYPE))
+    result = vtkPolyData()
+    result.SetPoints(surface.GetPoints())
+    result.SetPolys(cells)
+    producer = vtkTrivialProducer()
+    producer.SetOutput(result)
+    return producer
+
+
 def cases(marked, forms, bent):
     """Names, and what makes the filter."""
     yield "vtkMarkHandle, growing", lambda: connected(
@@ -78,6 +99,9 @@ def cases(marked, forms, bent):
         yield f"vtk{kind}Deformation", lambda kind=kind: bending(kind, marked)
     for kind in ("CurvatureError", "VolumeChange"):
         yield "vtk" + kind, lambda kind=kind: connected(kind, bent, marked)
+    yield "vtkBoundaryLoops", lambda: connected("BoundaryLoops", opened(marked))
+    yield "vtkMeshMerge", lambda: connected("MeshMerge", opened(marked), opened(marked))
+    yield "vtkCoatingTransfer", lambda: connected("CoatingTransfer", marked, marked)
     for method in ("DiscreteForms", "Isometric", "DeformationGradient", "Linear"):
         yield "vtkSurfaceMorph, " + method, lambda method=method: morph(method, marked, bent)
 
