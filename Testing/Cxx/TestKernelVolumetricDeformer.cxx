@@ -284,6 +284,11 @@ TEST(VolumetricDeformer, RefusesWhatHasNoInsideAndLatticesThatAreTooFine)
   EXPECT_NE(refusal(shapes::OpenCylinder(8, 4), 0.0).find("16 border points"), std::string::npos);
   EXPECT_NE(refusal(shapes::Icosphere(1), 1e-3).find("Set LatticeSpacing to"), std::string::npos);
   EXPECT_NE(refusal(shapes::Icosphere(1), 1e-200).find("Set LatticeSpacing to"), std::string::npos);
+  // A wire has few points inside, but its box has one layer at least in each direction.
+  const shapes::Shape wire = shapes::Bar(1, 1, 4, { 1e-8, 1e-8, 1e3 });
+  EXPECT_NE(refusal(wire, 1e-6).find("in a box of 1e+09"), std::string::npos)
+    << refusal(wire, 1e-6);
+  EXPECT_EQ(refusal(wire, 1e-3), "");
   shapes::Shape flat = shapes::Icosphere(1);
   flat.Positions.col(2).setZero();
   EXPECT_NE(refusal(flat, 0.0).find("encloses no volume"), std::string::npos);

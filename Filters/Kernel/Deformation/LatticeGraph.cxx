@@ -86,13 +86,24 @@ public:
   }
 
 private:
+  /// The spacing at which the box has MostBoxPoints, however many layers lie in its short
+  /// sides.
+  double LeastSpacingOfBox() const
+  {
+    Eigen::Vector3d sides = this->Box.sizes();
+    std::sort(sides.data(), sides.data() + 3);
+    return std::max({ sides[2] / MostBoxPoints, std::sqrt(sides[2] * sides[1] / MostBoxPoints),
+      std::cbrt(sides.prod() / MostBoxPoints) });
+  }
+
   void ChooseSpacing(const LatticeOptions& options)
   {
     const double volume = this->Body.GetVolume();
     this->Spacing = options.Spacing > 0.0
       ? options.Spacing
       : std::max(MeanEdgeLength(this->Mesh, this->Rest), std::cbrt(0.5 * volume / this->UsedCount));
-    const Eigen::Vector3d cells = this->Box.sizes() / this->Spacing;
+    // At least one layer in each direction.
+    const Eigen::Vector3d cells = (this->Box.sizes() / this->Spacing).cwiseMax(1.0);
     const double inside = volume / std::pow(this->Spacing, 3);
     if (!(inside <= options.MostPoints) || !(cells.prod() <= MostBoxPoints))
     {
@@ -101,9 +112,7 @@ private:
            << " points inside of the surface, in a box of " << cells.prod() << "; at most "
            << options.MostPoints << " and " << MostBoxPoints
            << " fit in memory. Set LatticeSpacing to "
-           << 1.1 *
-          std::max(
-            std::cbrt(volume / options.MostPoints), std::cbrt(this->Box.volume() / MostBoxPoints))
+           << 1.1 * std::max(std::cbrt(volume / options.MostPoints), this->LeastSpacingOfBox())
            << " or more, or to 0.";
       throw Error(ErrorCode::TooLarge, text.str());
     }
