@@ -3,6 +3,8 @@
 
 #include "Bridge/FilterRun.h"
 
+#include "Bridge/MatchedSurfaces.h"
+#include "Bridge/NeighborSteps.h"
 #include "Bridge/PointArrays.h"
 #include "Bridge/StretchArrays.h"
 #include "Bridge/SurfacePair.h"
@@ -16,10 +18,12 @@
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
@@ -288,8 +292,53 @@ std::map<std::string, double> FillTable(const Changes& changes, vtkTable* output
 }
 
 vtkVolumeChange::vtkVolumeChange()
+  : Steps(std::make_unique<cartan::NeighborSteps>())
 {
   this->SetNumberOfOutputPorts(2);
+}
+
+vtkVolumeChange::~vtkVolumeChange() = default;
+
+int vtkVolumeChange::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  this->Steps->ReadTimes(inputVector[0]->GetInformationObject(0));
+  return this->Superclass::RequestInformation(request, inputVector, outputVector);
+}
+
+int vtkVolumeChange::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkInformation* output = outputVector->GetInformationObject(0);
+  if (this->ComputeRates && output->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+  {
+    this->Steps->Request(inputVector[0]->GetInformationObject(0),
+      output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()));
+  }
+  return this->Superclass::RequestUpdateExtent(request, inputVector, outputVector);
+}
+
+int vtkVolumeChange::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (this->ComputeRates && !this->Steps->Take(vtkPolyData::GetData(inputVector[0])))
+  {
+    request->Set(vtkStreamingDemandDrivenPipeline::CONTINUE_EXECUTING(), 1);
+    return 1;
+  }
+  request->Remove(vtkStreamingDemandDrivenPipeline::CONTINUE_EXECUTING());
+  const int result = this->Superclass::RequestData(request, inputVector, outputVector);
+  this->Steps->Clear();
+  return result;
+}
+
+void vtkVolumeChange::UsePreparedInput(cartan::FilterRun& run) const
+{
+  if (this->ComputeRates)
+  {
+    this->RefusePrepareInput();
+  }
+  this->Superclass::UsePreparedInput(run);
 }
 
 vtkTable* vtkVolumeChange::GetChangeTable()
@@ -329,9 +378,31 @@ void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun
   }
   AddArrays(output, pair, changes);
   this->AddStretches(pair, run);
+  if (this->ComputeRates)
+  {
+    this->AddRates(run);
+  }
   this->Results = FillTable(changes, run.OutputTable(1));
   cartan::AddFieldValue(output, "RelativeVolumeChange", this->GetRelativeVolumeChange());
   cartan::AddFieldValue(output, "ShapeDistance", this->GetShapeDistance());
+}
+
+void vtkVolumeChange::AddRates(cartan::FilterRun& run) const
+{
+  if (!this->Steps->IsComplete() || !(this->Steps->GetInterval() > 0.0))
+  {
+    throw cartan::Error(cartan::ErrorCode::BadInput,
+      "There are no rates without two time steps or more at times that increase: turn ComputeRates "
+      "off, or connect a series and ask for one of its times.");
+  }
+  const cartan::MatchedSurfaces matched =
+    cartan::ReadMatchedSurfaces({ run.Input(0), this->Steps->GetBefore(), this->Steps->GetAfter() },
+      { "input", "time step before", "time step after" },
+      "Give all time steps the same points and cells in the same order.", run.Context());
+  const vtkIdType cells = run.Output()->GetNumberOfCells();
+  cartan::AddRateArrays(cartan::MeasureStretches(*matched.Mesh, *matched.Cells, cells,
+                          *matched.Positions[1], *matched.Positions[2], run.Context()),
+    this->Steps->GetInterval(), run.Output());
 }
 
 void vtkVolumeChange::AddStretches(const cartan::SurfacePair& pair, cartan::FilterRun& run) const
@@ -347,24 +418,15 @@ void vtkVolumeChange::AddStretches(const cartan::SurfacePair& pair, cartan::Filt
   {
     cartan::AddStretchArrays(stretches, output);
   }
-  using cartan::StrainMeasure;
-  switch (this->StrainMeasure)
+  if (this->StrainMeasure != NO_STRAIN)
   {
-    case BIOT:
-      cartan::AddStrainArrays(stretches, StrainMeasure::Biot, "BiotStrain", output);
-      break;
-    case GREEN_LAGRANGE:
-      cartan::AddStrainArrays(
-        stretches, StrainMeasure::GreenLagrange, "GreenLagrangeStrain", output);
-      break;
-    case HENCKY:
-      cartan::AddStrainArrays(stretches, StrainMeasure::Hencky, "HenckyStrain", output);
-      break;
-    case EULER_ALMANSI:
-      cartan::AddStrainArrays(stretches, StrainMeasure::EulerAlmansi, "EulerAlmansiStrain", output);
-      break;
-    default:
-      break;
+    static_assert(static_cast<int>(cartan::StrainMeasure::Biot) == BIOT - 1 &&
+        static_cast<int>(cartan::StrainMeasure::GreenLagrange) == GREEN_LAGRANGE - 1 &&
+        static_cast<int>(cartan::StrainMeasure::Hencky) == HENCKY - 1 &&
+        static_cast<int>(cartan::StrainMeasure::EulerAlmansi) == EULER_ALMANSI - 1,
+      "the enumerations agree");
+    cartan::AddStrainArrays(
+      stretches, static_cast<cartan::StrainMeasure>(this->StrainMeasure - 1), output);
   }
 }
 
@@ -373,6 +435,7 @@ void vtkVolumeChange::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ComputeLocalVolume: " << this->ComputeLocalVolume << "\n";
   os << indent << "ComputeStretches: " << this->ComputeStretches << "\n";
+  os << indent << "ComputeRates: " << this->ComputeRates << "\n";
   os << indent << "StrainMeasure: " << this->StrainMeasure << "\n";
   for (const auto& [name, value] : this->Results)
   {

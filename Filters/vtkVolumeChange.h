@@ -32,6 +32,9 @@
  *   largest triangle.
  * - with StrainMeasure two arrays of its name (points and cells), such as
  *   `GreenLagrangeStrain1` >= `GreenLagrangeStrain2`: the principal strains.
+ * - with ComputeRates `StretchRate1` >= `StretchRate2` (points and cells), in 1 / time: the
+ *   principal rates of stretching, the logarithms of the stretches from the time step before
+ *   to the one after, over the time between the two.
  * `AreaRatio` is the active point scalars, by which viewers color the surface.
  * Field data, one double each: `RelativeVolumeChange`, `ShapeDistance`.
  *
@@ -75,8 +78,13 @@
 #include "vtkSurfaceComparison.h"
 
 #include <map>    // For the results
+#include <memory> // For the time steps
 #include <string> // For their names
 
+namespace cartan
+{
+class NeighborSteps;
+}
 class vtkTable;
 
 class VTKCARTAN_EXPORT vtkVolumeChange : public vtkSurfaceComparison
@@ -132,6 +140,17 @@ public:
   void SetStrainMeasureToEulerAlmansi() { this->SetStrainMeasure(EULER_ALMANSI); }
   ///@}
 
+  ///@{
+  /**
+   * Whether to compute the rates of stretching of an input with time steps. It reads the
+   * steps before and after the one that is asked for, and is an error without time steps, and
+   * with PrepareInput. Default: off.
+   */
+  vtkSetMacro(ComputeRates, bool);
+  vtkGetMacro(ComputeRates, bool);
+  vtkBooleanMacro(ComputeRates, bool);
+  ///@}
+
   /**
    * Output 1, valid after Update().
    */
@@ -150,19 +169,29 @@ public:
 
 protected:
   vtkVolumeChange();
-  ~vtkVolumeChange() override = default;
+  ~vtkVolumeChange() override;
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  void UsePreparedInput(cartan::FilterRun& run) const override;
   void Compare(const cartan::SurfacePair& pair, cartan::FilterRun& run) override;
   void ForgetResults() override { this->Results.clear(); }
 
 private:
   double GetResult(const std::string& name) const;
+  void AddRates(cartan::FilterRun& run) const;
   void AddStretches(const cartan::SurfacePair& pair, cartan::FilterRun& run) const;
 
   bool ComputeLocalVolume = true;
   bool ComputeStretches = true;
   int StrainMeasure = NO_STRAIN;
+  bool ComputeRates = false;
+  std::unique_ptr<cartan::NeighborSteps> Steps;
   std::map<std::string, double> Results;
 };
 

@@ -58,9 +58,22 @@ void AddStretchArrays(const SurfaceStretches& stretches, vtkPolyData* output)
   AddTo(output->GetCellData(), stretches.OfCells);
 }
 
-void AddStrainArrays(const SurfaceStretches& stretches, StrainMeasure measure,
-  const std::string& name, vtkPolyData* output)
+void AddRateArrays(const SurfaceStretches& stretches, double interval, vtkPolyData* output)
 {
+  const auto add = [&](vtkDataSetAttributes* attributes, const Stretches& of)
+  {
+    AddArray(attributes, "StretchRate1", Strains(of.Larger, StrainMeasure::Hencky) / interval);
+    AddArray(attributes, "StretchRate2", Strains(of.Smaller, StrainMeasure::Hencky) / interval);
+  };
+  add(output->GetPointData(), stretches.OfPoints);
+  add(output->GetCellData(), stretches.OfCells);
+}
+
+void AddStrainArrays(const SurfaceStretches& stretches, StrainMeasure measure, vtkPolyData* output)
+{
+  static const char* const names[] = { "BiotStrain", "GreenLagrangeStrain", "HenckyStrain",
+    "EulerAlmansiStrain" };
+  const std::string name = names[static_cast<int>(measure)];
   const auto add = [&](vtkDataSetAttributes* attributes, const Stretches& of)
   {
     AddArray(attributes, name + "1", Strains(of.Larger, measure));

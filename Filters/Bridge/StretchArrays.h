@@ -26,7 +26,11 @@ SurfaceStretches MeasureStretches(const TriangleMesh& mesh, const Connectivity& 
 /// Adds Stretch1, Stretch2, StretchDirection1 and StretchDirection2 to points and cells.
 void AddStretchArrays(const SurfaceStretches& stretches, vtkPolyData* output);
 
-/// Adds `name`1 and `name`2 to points and cells.
-void AddStrainArrays(const SurfaceStretches& stretches, StrainMeasure measure,
-  const std::string& name, vtkPolyData* output);
+/// Adds StretchRate1 and StretchRate2 to points and cells: the principal Hencky strains over the
+/// time in which they come about.
+void AddRateArrays(const SurfaceStretches& stretches, double interval, vtkPolyData* output);
+
+/// Adds two arrays of the measure's name to points and cells, such as HenckyStrain1 and
+/// HenckyStrain2.
+void AddStrainArrays(const SurfaceStretches& stretches, StrainMeasure measure, vtkPolyData* output);
 }

@@ -3,7 +3,9 @@
 // TestKernelStretches.cxx.
 #include "vtkVolumeChange.h"
 
+#include "AdviceWords.h"
 #include "TestShapes.h"
+#include "TimeSource.h"
 #include "VtkTestHelpers.h"
 
 #include <cmath>
@@ -133,4 +135,96 @@ TEST_F(VtkStretches, OfPolygonsAndLinesToo)
   EXPECT_EQ(this->Find("Stretch1", false)->GetTuple1(0), 1.0); // the line comes first
   EXPECT_GT(this->Find("Stretch1", false)->GetTuple1(1), 0.9);
   EXPECT_EQ(this->Find("Stretch1", true)->GetTuple1(4), 1.0);
+}
+
+namespace
+{
+/// A plane at some times, moved by a function of place and time.
+template <typename Move>
+vtkSmartPointer<vtktest::TimeSource> MovingPlane(const std::vector<double>& times, const Move& move)
+{
+  std::vector<vtkSmartPointer<vtkPolyData>> steps;
+  for (const double time : times)
+  {
+    shapes::Shape plane = shapes::Plane(6, 1.0, 0.2);
+    for (int v = 0; v < plane.NumberOfVertices(); ++v)
+    {
+      plane.Positions.row(v) = move(Eigen::RowVector3d(plane.Positions.row(v)), time);
+    }
+    steps.push_back(MakePolyData(plane));
+  }
+  auto source = vtkSmartPointer<vtktest::TimeSource>::New();
+  source->SetSteps(times, steps);
+  return source;
+}
+}
+
+// Of an exponential growth the rate is the exponent, whatever the steps.
+TEST_F(VtkStretches, RatesOfExponentialGrowthAreItsExponents)
+{
+  const auto source = MovingPlane({ 0.0, 0.5, 2.0, 2.2 },
+    [](const Eigen::RowVector3d& x, double t) -> Eigen::RowVector3d {
+      return { x[0] * std::exp(0.3 * t), x[1] * std::exp(-0.2 * t), 0.0 };
+    });
+  this->Filter->SetInputConnection(source->GetOutputPort());
+  this->Filter->ComputeRatesOn();
+  for (const double time : { 0.0, 0.5, 2.0, 2.2 })
+  {
+    this->Log->Clear();
+    this->Filter->UpdateTimeStep(time);
+    vtktest::ExpectQuiet(*this->Log);
+    this->ExpectAll("StretchRate1", 0.3);
+    this->ExpectAll("StretchRate2", -0.2);
+    // The surface is that of the time itself.
+    this->ExpectAll("Stretch1", std::exp(0.3 * time));
+  }
+  EXPECT_LE(source->Requests.size(), 12u);
+}
+
+// A simple shear of gamma = rate * time has over an interval h the stretches
+// rate h / 2 +- sqrt(1 + (rate h / 2)^2), whose logarithms are +- asinh(rate h / 2).
+TEST_F(VtkStretches, RatesOfASimpleShearAreKnown)
+{
+  const double rate = 0.8;
+  const auto source = MovingPlane({ 0.0, 0.1, 0.2 },
+    [rate](const Eigen::RowVector3d& x, double t) -> Eigen::RowVector3d {
+      return { x[0] + rate * t * x[1], x[1], 0.0 };
+    });
+  this->Filter->SetInputConnection(source->GetOutputPort());
+  this->Filter->ComputeRatesOn();
+  this->Filter->UpdateTimeStep(0.1);
+  vtktest::ExpectQuiet(*this->Log);
+  this->ExpectAll("StretchRate1", std::asinh(0.5 * rate * 0.2) / 0.2);
+  this->ExpectAll("StretchRate2", -std::asinh(0.5 * rate * 0.2) / 0.2);
+}
+
+TEST_F(VtkStretches, RatesNeedTimeSteps)
+{
+  this->Filter->ComputeRatesOn();
+  this->Filter->Update();
+  vtktest::ExpectMessage(this->Log->Errors,
+    { "two time steps or more",
+      shapes::Advice("turn ComputeRates off, or connect a series and ask for one of its times.") });
+  this->Filter->ComputeRatesOff();
+  this->Update();
+  this->ExpectAll("Stretch1", 2.0);
+
+  const auto source = MovingPlane({ 0.0, 1.0 },
+    [](const Eigen::RowVector3d& x, double t) -> Eigen::RowVector3d { return (1.0 + t) * x; });
+  const auto other = MakePolyData(shapes::Plane(3));
+  const auto same = MakePolyData(shapes::Plane(6, 1.0, 0.2));
+  vtkNew<vtktest::TimeSource> changing;
+  changing->SetSteps({ 0.0, 1.0 }, { same, other });
+  this->Filter->ComputeRatesOn();
+  this->Filter->SetInputConnection(changing->GetOutputPort());
+  this->Log->Clear();
+  this->Filter->UpdateTimeStep(0.0);
+  vtktest::ExpectMessage(this->Log->Errors,
+    { "time step after",
+      shapes::Advice("Give all time steps the same points and cells in the same order.") });
+  this->Filter->SetInputConnection(source->GetOutputPort());
+  this->Log->Clear();
+  this->Filter->UpdateTimeStep(0.0);
+  vtktest::ExpectQuiet(*this->Log);
+  this->ExpectAll("StretchRate1", std::log(2.0));
 }
