@@ -38,6 +38,7 @@ void vtkExampleBasedDeformation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "WarmStart: " << this->WarmStart << "\n";
+  os << indent << "Rigidness: " << this->Rigidness << "\n";
   os << indent << "MaximumIterations: " << this->MaximumIterations << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "SpanDistance: " << this->SpanDistance << "\n";
@@ -131,6 +132,7 @@ cartan::DeformationMethod vtkExampleBasedDeformation::NewMethod(
   {
     fitted->SetIteration(this->MaximumIterations, this->Tolerance);
     fitted->SetWarmStart(this->WarmStart);
+    fitted->SetRigidness(this->Rigidness);
   };
   method.Decorate = [this, fitted](const cartan::DeformedSurface&, cartan::FilterRun& run)
   {

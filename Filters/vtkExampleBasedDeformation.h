@@ -65,6 +65,15 @@ public:
 
   ///@{
   /**
+   * Between the pose of the examples, 0, and vtkShapePreservingDeformation without volume
+   * correction, 1: the edges that both fit are blended. Default: 0.
+   */
+  vtkSetClampMacro(Rigidness, double, 0.0, 1.0);
+  vtkGetMacro(Rigidness, double);
+  ///@}
+
+  ///@{
+  /**
    * The maximum number of iterations, >= 0; 0 takes the start. Default: 30.
    */
   vtkSetClampMacro(MaximumIterations, int, 0, 100000);
@@ -112,6 +121,7 @@ private:
 
   std::unique_ptr<Internals> Own;
   bool WarmStart = false;
+  double Rigidness = 0.0;
   int MaximumIterations = 30;
   double Tolerance = 1e-6;
   double SpanDistance = 0.0;

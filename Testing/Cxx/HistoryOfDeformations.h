@@ -178,7 +178,9 @@ inline Subject ExampleBased()
     {
       auto* deformation = static_cast<Filter*>(filter);
       deformation->RemoveAllExamples();
-      deformation->AddExampleData(surfaces[value % 4]);
+      // Those of the most frequent connectivity, and one of another.
+      const int first[] = { 0, 2, 3, 3, 2, 1 };
+      deformation->AddExampleData(surfaces[first[value]]);
       if (value > 3)
       {
         deformation->AddExampleData(surfaces[2]);
@@ -187,6 +189,7 @@ inline Subject ExampleBased()
   return Make<Filter>("ExampleBased",
     DeformationChoices<Filter>({ examples,
       Of<Filter>(2, [](Filter* f, int value) { f->SetMaximumIterations(20 - 10 * value); }),
+      Number<Filter>(&Filter::SetRigidness, { 0.0, 0.4 }),
       Number<Filter>(&Filter::SetTolerance, { 1e-6, 1e-2 }) }));
 }
 

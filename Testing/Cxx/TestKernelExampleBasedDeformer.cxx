@@ -202,6 +202,33 @@ TEST(ExampleBasedDeformer, StartsFromTheLastMotionWhenWarm)
   EXPECT_EQ(warm.GetNumberOfFactorizations(), 1);
 }
 
+TEST(ExampleBasedDeformer, BlendsWithShapePreservingByRigidness)
+{
+  const Shape bar = Bar();
+  const HandleProblem problem = Problem(bar);
+  HandleTargets targets;
+  targets.Motions.resize(1);
+  cartan::HandleMotion& motion = targets.Motions[0];
+  motion.RotationVector = { 0.6, 0.2, 0.0 };
+  motion.Linear = cartan::RotationFromVector(motion.RotationVector);
+  ExampleBasedDeformer deformer(problem, { Pose(bar, -90.0) });
+  const Points span = Deform(deformer, targets).Positions;
+  deformer.SetRigidness(1.0);
+  const Points rigid = Deform(deformer, targets).Positions;
+  cartan::ShapePreservingDeformer other(problem);
+  DeformedSurface expected;
+  other.Deform(targets, false, expected, {});
+  EXPECT_LT(Distance(rigid, expected.Positions), 1e-12);
+  EXPECT_GT(Distance(span, rigid), 1e-3);
+  deformer.SetRigidness(0.25);
+  const Points between = 0.75 * span + 0.25 * rigid;
+  EXPECT_LT(Distance(Deform(deformer, targets).Positions, between), 1e-12);
+  EXPECT_EQ(deformer.GetNumberOfFactorizations(), 2);
+  // In the span of the examples and rigid alike.
+  const HandleTargets atRest = TargetsOf(problem, bar.Positions);
+  EXPECT_LT(Distance(Deform(deformer, atRest).Positions, bar.Positions), 1e-9);
+}
+
 TEST(ExampleBasedDeformer, RefusesHandlesWithoutPositionsAndSaysWhenItHasNotSettled)
 {
   const Shape bar = Bar();

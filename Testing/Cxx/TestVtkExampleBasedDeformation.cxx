@@ -78,6 +78,9 @@ TEST(ExampleBasedDeformation, ReachesExamplesAndTellsTheirWeights)
       EXPECT_GT(filter->GetNumberOfIterations(), 0);
     }
     EXPECT_LE(filter->GetNumberOfFactorizations(), 2);
+    filter->SetRigidness(0.5);
+    vtktest::ExpectEnds(
+      filter.Works(), bar, vtktest::Turn(10.0), precision == VTK_FLOAT ? 1e-6 : 1e-9);
   }
   std::ostringstream text;
   vtkNew<vtkExampleBasedDeformation> filter;

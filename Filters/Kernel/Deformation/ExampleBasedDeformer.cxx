@@ -81,6 +81,7 @@ ExampleBasedDeformer::ExampleBasedDeformer(HandleProblem problem,
       context.Part(0.0, 0.5))
   , Span(this->Problem, this->System.Triangles(this->Problem), examples)
   , MovingHandles(MovingHandleOfVertices(this->Problem))
+  , Backend(backend)
   , Weights(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(examples.size())))
 {
   context.Report(1.0);
@@ -89,6 +90,7 @@ ExampleBasedDeformer::ExampleBasedDeformer(HandleProblem problem,
 std::size_t ExampleBasedDeformer::GetBytes() const
 {
   return this->GetBaseBytes() + this->System.GetBytes() + this->Span.GetBytes() +
+    (this->Rigid ? this->Rigid->GetBytes() : 0) +
     TotalBytes(this->MovingHandles, this->Harmonic, this->SoftTargets, this->Fitted, this->Forces,
       this->Values, this->Slope, this->Curvature, this->Weights);
 }
@@ -387,7 +389,30 @@ void ExampleBasedDeformer::DeformRelative(const HandleTargets& targets, bool wan
   {
     this->WriteTransforms(targets, result.Transforms);
   }
+  if (this->Rigidness > 0.0)
+  {
+    this->BlendWithRigid(targets, result, context.Part(0.9, 1.0));
+  }
   context.Report(1.0);
+}
+
+void ExampleBasedDeformer::BlendWithRigid(
+  const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context)
+{
+  if (!this->Rigid)
+  {
+    this->Rigid = std::make_unique<ShapePreservingDeformer>(
+      this->Problem, this->Backend, context.Part(0.0, 0.6));
+  }
+  DeformedSurface rigid;
+  this->Rigid->Deform(targets, result.Transforms.rows() > 0, rigid, context.Part(0.6, 1.0));
+  result.Positions += this->Rigidness * (rigid.Positions - result.Positions);
+  for (Eigen::Index v = 0; v < result.Transforms.rows(); ++v)
+  {
+    MatrixAt(result.Transforms, v) =
+      ProjectOnRotations((1.0 - this->Rigidness) * MatrixAt(result.Transforms, v) +
+        this->Rigidness * MatrixAt(rigid.Transforms, v));
+  }
 }
 
 /// The mean of the triangles' rotations around each unknown.

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "Deformation/ExampleSpan.h"
-#include "Deformation/SurfaceDeformer.h"
+#include "Deformation/ShapePreservingDeformer.h"
 
+#include <memory>
 #include <vector>
 
 namespace cartan
@@ -47,6 +48,11 @@ public:
   /// Whether to start from the last motion's weights. Default: off.
   void SetWarmStart(bool warm) { this->IsWarm = warm; }
 
+  /// How rigid the result is, 0 to 1: the part of ShapePreservingDeformer's result in the
+  /// positions, the rest is that of the examples. Both fit edges by the same matrix, so this
+  /// blends the edges that they fit. Needs one more factorization. Default: 0.
+  void SetRigidness(double part) { this->Rigidness = part; }
+
   /// Of the last motion: w, #examples; sqrt(E / E(x = 0)), how far the result is from the
   /// span; the number of steps; and whether they ended below the tolerance.
   const Eigen::VectorXd& GetWeights() const { return this->Weights; }
@@ -56,7 +62,8 @@ public:
 
   int GetNumberOfFactorizations() const override
   {
-    return this->System.GetNumberOfFactorizations();
+    return this->System.GetNumberOfFactorizations() +
+      (this->Rigid ? this->Rigid->GetNumberOfFactorizations() : 0);
   }
   int GetNumberOfFreeVertices() const override { return this->System.NumberOfUnknowns(); }
   std::string GetWarning() const override;
@@ -75,6 +82,8 @@ private:
   Eigen::VectorXd BestStart(const ExecutionContext& context);
   void Descend(const ExecutionContext& context);
   double StepDown(double before, Eigen::VectorXd& step, const ExecutionContext& context);
+  void BlendWithRigid(
+    const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
   void WriteTransforms(const HandleTargets& targets, Matrices& transforms) const;
 
   HandleLaplacian System;
@@ -83,6 +92,9 @@ private:
   int MaximumIterations = 30;
   double Tolerance = 1e-6;
   bool IsWarm = false;
+  double Rigidness = 0.0;
+  SolverBackend Backend;
+  std::unique_ptr<ShapePreservingDeformer> Rigid; // empty until first needed
 
   Points Harmonic;    // h, #locals x 3
   Points SoftTargets; // #unknowns x 3, of those held softly
