@@ -58,6 +58,7 @@ std::vector<std::vector<int>> LoopsOf(
   const std::vector<LoopPair>& pairs, std::vector<int> LoopPair::*side)
 {
   std::vector<std::vector<int>> loops;
+  loops.reserve(pairs.size());
   for (const LoopPair& pair : pairs)
   {
     loops.push_back(pair.*side);
