@@ -79,12 +79,11 @@ def another(smproperty, value):
         return next(entry for entry in entries if entry != value)
     if smproperty.FindDomain("vtkSMBooleanDomain"):
         return 1 - value
-    if not isinstance(value, int):
-        return value + 0.5
-    values_in_range = smproperty.FindDomain("vtkSMIntRangeDomain")
-    is_last = (values_in_range and values_in_range.GetMaximumExists(0)
-               and value == values_in_range.GetMaximum(0))
-    return value - 1 if is_last else value + 1
+    is_int = isinstance(value, int)
+    step = 1 if is_int else 0.5
+    domain = smproperty.FindDomain("vtkSMIntRangeDomain" if is_int else "vtkSMDoubleRangeDomain")
+    is_last = (domain and domain.GetMaximumExists(0) and value + step > domain.GetMaximum(0))
+    return value - step if is_last else value + step
 
 
 def check_settable(proxy):
@@ -127,7 +126,9 @@ forms = simple.OutputPort(simple.DiscreteForms(Input=sphere), 1)
 for name in sorted(names):
     inputs = {"Forms": forms} if name == "FrameReconstruction" else {}
     for second in ("Reference", "Original", "Source"):
-        if servermanager.ProxyManager().GetPrototypeProxy("filters", name).GetProperty(second):
+        prototype = servermanager.ProxyManager().GetPrototypeProxy("filters", name)
+        port = prototype.GetProperty(second)
+        if port and port.IsA("vtkSMInputProperty"):
             inputs[second] = sphere
     proxy = getattr(simple, name)(Input=sphere, **inputs)
     algorithm = proxy.GetClientSideObject()
