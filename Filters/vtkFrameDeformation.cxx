@@ -6,6 +6,7 @@
 #include "Bridge/PointArrays.h"
 #include "Kernel/Base/Constants.h"
 #include "Kernel/Deformation/FrameDeformer.h"
+#include "Kernel/Deformation/SliverRemoval.h"
 #include "Kernel/Measure/LocalVolumes.h"
 #include "Kernel/Measure/ShapeDistance.h"
 #include "Kernel/Mesh/Geometry.h"
@@ -27,7 +28,7 @@ std::unique_ptr<cartan::VolumeModel> NewModel(
     mesh, *problem.Rest,
     [&tree](const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
     { return tree.FirstHit(from, direction); },
-    context.Part(0.3, 1.0)));
+    context.Part(0.3, 1.0), cartan::ComponentsInWhole(problem)));
 }
 
 /// Of the mesh without slivers: which slivers it is without depends on the handles.
@@ -51,11 +52,16 @@ Eigen::VectorXd LocalVolumesOf(const cartan::HandleProblem& problem,
   const cartan::VolumeModel& model, const cartan::LocalVolumes& volumes,
   const cartan::Points& positions, const cartan::ExecutionContext& context)
 {
+  std::vector<char> enclosesVolume(model.Names.size());
+  for (std::size_t c = 0; c < model.Names.size(); ++c)
+  {
+    enclosesVolume[model.Names[c]] = model.EnclosesVolume[c];
+  }
   Eigen::VectorXd measured = volumes.Measure(positions, context);
   for (Eigen::Index v = 0; v < positions.rows(); ++v)
   {
     const int component = problem.GetWhole()->Component(static_cast<int>(v));
-    if (component >= 0 && !model.EnclosesVolume[component])
+    if (component >= 0 && !enclosesVolume[component])
     {
       measured[v] = std::numeric_limits<double>::quiet_NaN();
     }

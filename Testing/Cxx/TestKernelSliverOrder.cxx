@@ -32,6 +32,36 @@ TEST(SliverRemoval, OrderOfVerticesDoesNotMatter)
   EXPECT_TRUE(ExpectSameBackwards(caps, 1e-9));
 }
 
+/// Two tubes, the second with a cap at its last vertex.
+Shape TubeAndTubeWithCap()
+{
+  Shape spoiled = Tube();
+  SplitTriangle(spoiled, MiddleTriangle(spoiled), { 0.499, 0.4992, 0.0018 });
+  spoiled.Positions.rowwise() += Eigen::RowVector3d(0.0, 3.0, 0.0);
+  return shapes::Union(Tube(), spoiled);
+}
+
+TEST(SliverRemoval, TheFirstVertexOfAPartGoesLikeAnyOther)
+{
+  EXPECT_TRUE(ExpectSameBackwards(TubeAndTubeWithCap(), 1e-9));
+}
+
+TEST(SliverRemoval, PartsKeepTheirNumbersInMessages)
+{
+  // The last vertex becomes the first one, and its part the first part, until it goes.
+  const Shape shape = TubeAndTubeWithCap();
+  const int count = shape.NumberOfVertices();
+  Shape turned = shape;
+  turned.Positions << shape.Positions.row(count - 1), shape.Positions.topRows(count - 1);
+  turned.Faces = shape.Faces.unaryExpr([&](int v) { return (v + 1) % count; });
+  const HandleProblem problem = cartan::WithoutSlivers(ProblemOf(turned));
+  ASSERT_EQ(problem.Riders.size(), 1u);
+  EXPECT_EQ(cartan::ComponentsInWhole(problem), (std::vector<long long>{ 1, 0 }));
+
+  const HandleProblem without = cartan::WithoutSlivers(ProblemOf(shapes::Union(Tube(), Tube())));
+  EXPECT_EQ(cartan::ComponentsInWhole(without), (std::vector<long long>{ 0, 1 }));
+}
+
 TEST(SliverRemoval, OrderOfEqualSliversDoesNotMatter)
 {
   // All triangles of a tube that is finely cut around and twisted are caps of equal edges,

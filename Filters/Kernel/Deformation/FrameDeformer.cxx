@@ -390,7 +390,8 @@ void FrameDeformer::CloseVolumes(Points& positions)
   if (!notClosed.IsEmpty())
   {
     this->Warning += (this->Warning.empty() ? "" : " ");
-    this->Warning += "The volume of " + notClosed.Describe("component", "components") +
+    this->Warning += "The volume of " +
+      notClosed.Renamed(this->Model->Names).Describe("component", "components") +
       " could not be closed: no displacement of its free points along the volume's gradient "
       "gives it back. Leave more points free, or deform less.";
   }

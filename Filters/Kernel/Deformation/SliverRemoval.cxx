@@ -58,7 +58,6 @@ public:
     , Handle(problem.Handle)
     , JoinedWith(problem.JoinedWith)
     , IsSoft(problem.SoftWeights.size() > 0)
-    , IsFirst(problem.Handle.size(), 0)
   {
     if (!this->JoinedWith.empty())
     {
@@ -70,20 +69,6 @@ public:
       const bool isJoined = first != static_cast<int>(v);
       this->IsJoined[v] = this->IsJoined[v] || isJoined;
       this->IsJoined[first] = this->IsJoined[first] || isJoined;
-    }
-    if (this->Mesh->NumberOfComponents() < 2)
-    {
-      return; // the number of a single one is certain
-    }
-    std::vector<char> isSeen(this->Mesh->NumberOfComponents(), 0);
-    for (int v = 0; v < this->Mesh->NumberOfVertices(); ++v)
-    {
-      const int component = this->Mesh->Component(v);
-      if (component >= 0 && !isSeen[component])
-      {
-        isSeen[component] = 1;
-        this->IsFirst[v] = 1;
-      }
     }
   }
 
@@ -129,8 +114,7 @@ private:
 
   bool MayGo(int v) const
   {
-    return this->Handle[v] == 0 && !this->IsFirst[v] &&
-      (this->IsJoined.empty() || !this->IsJoined[v]);
+    return this->Handle[v] == 0 && (this->IsJoined.empty() || !this->IsJoined[v]);
   }
 
   /// Whether vertices are one for the method, so that no edge may run between them.
@@ -191,7 +175,7 @@ private:
   {
     const int a = this->Mesh->Neighbor(d);
     const int b = this->Mesh->Neighbor(this->Mesh->NextAround(v, d));
-    return !this->IsSoft && !this->IsFirst[v] && (this->IsJoined.empty() || !this->IsJoined[v]) &&
+    return !this->IsSoft && (this->IsJoined.empty() || !this->IsJoined[v]) &&
       this->Handle[v] == this->Handle[a] && this->Handle[v] == this->Handle[b];
   }
 
@@ -421,7 +405,6 @@ private:
   const std::vector<int>& JoinedWith;
   std::vector<char> IsJoined; // with others; empty where all vertices are alone
   bool IsSoft;
-  std::vector<char> IsFirst; // of a component, which gives it its number
   std::vector<Lock> Locks;
   std::set<std::pair<int, int>> NewEdges; // of the flips of a pass
   Triangles Changed;                      // -1 where one goes
@@ -443,5 +426,19 @@ HandleProblem WithoutSlivers(HandleProblem problem, const ExecutionContext& cont
     problem.Riders = removal.TakeRiders();
   }
   return problem;
+}
+
+std::vector<long long> ComponentsInWhole(const HandleProblem& problem)
+{
+  const TriangleMesh& mesh = *problem.GetParted();
+  std::vector<long long> numbers(mesh.NumberOfComponents());
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (mesh.IsUsed(v))
+    {
+      numbers[mesh.Component(v)] = problem.GetWhole()->Component(v);
+    }
+  }
+  return numbers;
 }
 }

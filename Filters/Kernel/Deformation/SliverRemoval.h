@@ -18,11 +18,15 @@ namespace cartan
 /// triangles' normals, of caps higher than 1 %, are more than 30 degrees apart.
 /// Vertices of handles stay in the mesh, but for that of a cap between two of the same
 /// handle, which hold it anyway; with soft weights all. Joined vertices stay, and no
-/// edge comes to run between them. The components keep their numbers. What
-/// splits a triangle goes first, the rest by length: the order of the vertices
-/// decides only between slivers of equal length that touch each other.
+/// edge comes to run between them. What splits a triangle goes first, the rest by
+/// length: the order of the vertices decides only between slivers of equal length that
+/// touch each other.
 ///
 /// The problem as it is, and the same objects, when there is no sliver. O(#V + #T),
 /// and again as often as slivers hang on slivers. Throws Error(Aborted).
 HandleProblem WithoutSlivers(HandleProblem problem, const ExecutionContext& context = {});
+
+/// The number in the whole mesh of each component of the mesh without slivers, whose
+/// numbers are others where the first vertex of one has gone.
+std::vector<long long> ComponentsInWhole(const HandleProblem& problem);
 }

@@ -172,19 +172,21 @@ void FindEnclosingComponents(const TriangleMesh& mesh, const Points& points, Vol
   if (!open.IsEmpty())
   {
     AddSentence(model.Warning,
-      "No volume is preserved in " + open.Describe("open component", "open components") +
+      "No volume is preserved in " +
+        open.Renamed(model.Names).Describe("open component", "open components") +
         ": close the surface (Prepare Surface, Maximum Hole Edges).");
   }
   if (!flat.IsEmpty())
   {
     AddSentence(model.Warning,
-      "No volume is preserved in " + flat.Describe("component", "components") +
+      "No volume is preserved in " + flat.Renamed(model.Names).Describe("component", "components") +
         " that enclose none, as a sheet with two sides.");
   }
   if (!inverted.IsEmpty())
   {
     AddSentence(model.Warning,
-      "No volume is preserved in " + inverted.Describe("component", "components") +
+      "No volume is preserved in " +
+        inverted.Renamed(model.Names).Describe("component", "components") +
         " that are oriented inside out: " + FlipAdvice(isAnyRight));
   }
 }
@@ -256,7 +258,8 @@ void LeaveOutUnmeasured(const TriangleMesh& mesh, VolumeModel& model)
   if (!unmeasured.IsEmpty())
   {
     AddSentence(model.Warning,
-      "No volume is preserved in " + unmeasured.Describe("component", "components") +
+      "No volume is preserved in " +
+        unmeasured.Renamed(model.Names).Describe("component", "components") +
         " whose inside no ray has found: the surface is folded flat, or crosses itself.");
   }
 }
@@ -283,9 +286,10 @@ Points OffsetsFromMiddle(const TriangleMesh& mesh, const Points& points, const P
 }
 
 VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
-  const RayCaster& castRay, const ExecutionContext& context)
+  const RayCaster& castRay, const ExecutionContext& context, std::vector<long long> names)
 {
   VolumeModel model;
+  model.Names = std::move(names);
   FindEnclosingComponents(mesh, points, model);
   if (!IsAnyEnclosing(model))
   {

@@ -34,6 +34,8 @@ struct VolumeModel
   /// are oriented inside out and what is inside of those.
   std::vector<char> EnclosesVolume;
   std::vector<double> Volumes;
+  /// The components' numbers in messages; empty: as in the mesh.
+  std::vector<long long> Names;
   /// Why some components do not take part; empty if all do.
   std::string Warning;
 
@@ -41,8 +43,8 @@ struct VolumeModel
 
   std::size_t GetBytes() const
   {
-    return TotalBytes(
-      this->LocalDepth, this->IsMeasured, this->Offsets, this->EnclosesVolume, this->Volumes);
+    return TotalBytes(this->LocalDepth, this->IsMeasured, this->Offsets, this->EnclosesVolume,
+      this->Volumes, this->Names);
   }
 };
 
@@ -52,7 +54,8 @@ struct VolumeModel
 /// implicit step (M + tau L) c' = M c, tau = .02 median(depth)^2 of the component.
 /// IsEmpty() if no component encloses volume.
 VolumeModel MeasureVolumeModel(const TriangleMesh& mesh, const Points& points,
-  const RayCaster& castRay, const ExecutionContext& context = {});
+  const RayCaster& castRay, const ExecutionContext& context = {},
+  std::vector<long long> names = {});
 
 /// h of Eq. 13 at each vertex, with the curvatures from CurvaturesFromNormals: #V.
 Eigen::VectorXd ColumnHeights(const TriangleMesh& mesh, const Points& points,
