@@ -6,6 +6,7 @@
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Differential/DifferentialCoordinates.h"
+#include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Mesh/UsedVertices.h"
 
 #include "vtkDataArray.h"
@@ -158,6 +159,31 @@ cartan::Points ReadCoordinates(vtkPolyData* input, const cartan::TriangleMesh& m
 }
 }
 
+namespace
+{
+/// How far points may be from where the numbers put them, in parts of the size.
+constexpr double LargestUncertainty = 1e-5;
+
+/// A sentence on the points that rounding leaves open; empty where there are none.
+std::string DescribeUncertainty(
+  const cartan::TriangleMesh& mesh, const cartan::Points& positions, const cartan::Points& change)
+{
+  const double size = cartan::BoundingDiagonal(positions, mesh.GetTriangles());
+  cartan::IdSample open;
+  for (Eigen::Index v = 0; v < change.rows(); ++v)
+  {
+    if (!(change.row(v).norm() <= LargestUncertainty * size))
+    {
+      open.Add(v);
+    }
+  }
+  return open.IsEmpty() ? ""
+                        : "Rounding leaves " + open.Describe("point", "points") +
+      " open by more than 1e-5 of the size of the result: flip edges before the coordinates are "
+      "made (Prepare Surface, Flip Edges), or hold more points.";
+}
+}
+
 void vtkDifferentialReconstruction::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
@@ -213,8 +239,10 @@ void vtkDifferentialReconstruction::Execute(cartan::FilterRun& run)
       return std::make_unique<cartan::DifferentialReconstruction>(
         surface->Mesh, surface->Positions, held.Points, weights, settings, context.Part(0.1, 0.7));
     });
+  cartan::Points uncertainty;
   const cartan::Points positions =
-    reconstruction->Reconstruct(deltas, held.Positions, context.Part(0.7, 0.9));
+    reconstruction->Reconstruct(deltas, held.Positions, context.Part(0.7, 0.9), &uncertainty);
+  run.Warn(DescribeUncertainty(*surface->Mesh, positions, uncertainty));
   run.Warn(cartan::WriteSurface(*surface, positions, input, run.Output(), context.Part(0.9, 1.0)));
   context.Report(1.0);
 }

@@ -30,7 +30,9 @@
  *
  * Errors, each with an empty output: no anchor in a component; an array that is missing,
  * of another size or not finite; other weights or normalization than the coordinates
- * were made with; a weight that is negative.
+ * were made with; a weight that is negative. A warning names points that rounding leaves
+ * open by more than 1e-5 of the size, as caps of 1e-8 of their edge do with cotangent
+ * weights.
  *
  * Reference: Sorkine, Differential Representations for Mesh Processing, Computer
  * Graphics Forum 25(4), 2006, section 2.2.

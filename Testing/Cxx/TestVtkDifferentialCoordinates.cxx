@@ -3,7 +3,9 @@
 #include "vtkDifferentialReconstruction.h"
 
 #include "Advice.h"
+#include "SliverShapes.h"
 
+#include "vtkPrepareSurface.h"
 #include "vtkUnsignedCharArray.h"
 
 namespace
@@ -223,6 +225,51 @@ TEST_F(ReconstructionFilter, RefusesOtherSettingsThanTheCoordinates)
   this->Filter->SetLaplacianWeightsToMeanValue();
   this->Filter->SetNormalizationToIntegrated();
   this->Result(input);
+  vtktest::ExpectQuiet(*this->Log);
+}
+
+TEST_F(ReconstructionFilter, SaysWhereCapsLeaveNoDigits)
+{
+  shapes::Shape torus = shapes::Torus(20, 12);
+  const int cap = slivers::MiddleTriangle(torus);
+  slivers::SplitTriangle(torus, cap, { 0.5 - 0.5e-8, 0.5 - 0.5e-8, 1e-8 });
+  auto surface = MakePolyData(torus);
+  vtktest::AddArray(
+    surface, "Handle", 1, [](vtkIdType v, double* value) { *value = v == 0 ? 1.0 : 0.0; });
+  // Coordinates of the surface at 1.5 of its size give that surface.
+  const auto miss = [&](vtkPolyData* rest)
+  {
+    vtkNew<vtkDifferentialCoordinates> coordinates;
+    coordinates->SetInputData(rest);
+    coordinates->Update();
+    const vtkSmartPointer<vtkPolyData> exaggerated = vtktest::CopyOf(coordinates->GetOutput());
+    ScaleCoordinates(exaggerated, 1.5);
+    const cartan::Points points = PointsOf(rest);
+    const cartan::Points expected = (1.5 * points).rowwise() - 0.5 * points.row(0);
+    return (this->Result(exaggerated) - expected).cwiseAbs().maxCoeff();
+  };
+  EXPECT_GT(miss(surface), 1e-3);
+  vtktest::ExpectMessage(this->Log->Warnings,
+    { "Rounding leaves",
+      shapes::Advice("flip edges before the coordinates are made (Prepare "
+                     "Surface, Flip Edges), or hold more points.") });
+
+  this->Log->Clear();
+  vtkNew<vtkPrepareSurface> flip;
+  flip->SetInputData(surface);
+  flip->FlipEdgesOn();
+  flip->Update();
+  EXPECT_LT(miss(flip->GetOutput()), 1e-9);
+  vtktest::ExpectQuiet(*this->Log);
+
+  // Held where the cap is.
+  const vtkIdType last = surface->GetNumberOfPoints() - 1;
+  surface->GetPointData()->GetArray("Handle")->SetTuple1(last, 1.0);
+  for (const int corner : { 0, 1, 2 })
+  {
+    surface->GetPointData()->GetArray("Handle")->SetTuple1(torus.Faces(cap, corner), 1.0);
+  }
+  miss(surface);
   vtktest::ExpectQuiet(*this->Log);
 }
 

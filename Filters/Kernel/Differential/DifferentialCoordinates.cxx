@@ -144,8 +144,8 @@ Points DifferentialReconstruction::Residual(const Points& deltas, const Points& 
   return this->Operator.GetDivisors().cwiseQuotient(this->Masses).asDiagonal() * residual;
 }
 
-Points DifferentialReconstruction::Reconstruct(
-  const Points& deltas, const Points& anchorPositions, const ExecutionContext& context) const
+Points DifferentialReconstruction::Reconstruct(const Points& deltas, const Points& anchorPositions,
+  const ExecutionContext& context, Points* uncertainty) const
 {
   // Steps of refinement gain as many digits as the factors have; a step that does
   // not halve the one before is rounding.
@@ -162,6 +162,10 @@ Points DifferentialReconstruction::Reconstruct(
     }
     this->System.Solve(this->Residual(deltas, positions), change);
     const double size = change.norm();
+    if (uncertainty)
+    {
+      *uncertainty = change;
+    }
     if (step > 0 && !(size < 0.5 * before))
     {
       break;

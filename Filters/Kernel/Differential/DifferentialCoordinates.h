@@ -71,9 +71,10 @@ public:
     const ExecutionContext& context = {});
 
   /// `deltas` is #V x 3, `anchorPositions` #anchors x 3. Vertices in no triangle keep
-  /// their points.
+  /// their points. `uncertainty` is set to the change that the last step of refinement
+  /// would still make, #V x 3: what rounding leaves open.
   Points Reconstruct(const Points& deltas, const Points& anchorPositions,
-    const ExecutionContext& context = {}) const;
+    const ExecutionContext& context = {}, Points* uncertainty = nullptr) const;
 
   const DifferentialOperator& GetOperator() const { return this->Operator; }
   int GetNumberOfFactorizations() const { return this->System.GetNumberOfFactorizations(); }
