@@ -2,6 +2,7 @@
 #include "vtkFrameReconstruction.h"
 
 #include "Bridge/FilterRun.h"
+#include "Bridge/JoinedCopies.h"
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Algebra/Rotation.h"
@@ -361,6 +362,8 @@ void vtkFrameReconstruction::Execute(cartan::FilterRun& run)
   const cartan::Points positions =
     cartan::SolvePositions(mesh, frames, cartan::RingCoordinates(mesh, forms), constraints.IsFixed,
       std::move(constraints.Positions), context.Part(0.7, 0.95));
+  run.Warn(cartan::DescribePartedCopies(
+    input, *surface, positions, "hold one copy of each in every part with a constraint array."));
   cartan::WriteReconstruction(*surface, positions, input, run.Output(), context);
   cartan::AddFrameArrays(run.Output(), frames);
   context.Report(1.0);

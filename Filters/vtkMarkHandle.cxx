@@ -4,10 +4,9 @@
 #include "Bridge/FilterRun.h"
 #include "Bridge/HandleArrays.h"
 #include "Bridge/InputPreparation.h"
+#include "Bridge/JoinedCopies.h"
 #include "Bridge/MarkedPoints.h"
 #include "Bridge/SelectionReader.h"
-#include "Kernel/Mesh/GeodesicDistance.h"
-#include "Kernel/Mesh/GrowByRings.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -46,19 +45,6 @@ void AddInside(
   }
 }
 
-std::vector<int> PointsIn(const cartan::PointMask& mask)
-{
-  std::vector<int> points;
-  for (std::size_t i = 0; i < mask.size(); ++i)
-  {
-    if (mask[i])
-    {
-      points.push_back(static_cast<int>(i));
-    }
-  }
-  return points;
-}
-
 // Returns what is odd about the surface that the region grows over, and the
 // surface, null if it was not needed.
 std::shared_ptr<const cartan::Surface> Grow(vtkPolyData* input, int rings, double distance,
@@ -69,20 +55,7 @@ std::shared_ptr<const cartan::Surface> Grow(vtkPolyData* input, int rings, doubl
     return nullptr;
   }
   const auto surface = cartan::ReadSurface(input, "input", context.Part(0.0, 0.3));
-  const std::vector<int> seeds = PointsIn(mask);
-  for (const int v : cartan::GrowByRings(*surface->Mesh, seeds, rings))
-  {
-    mask[v] = 1;
-  }
-  if (distance > 0.0)
-  {
-    const Eigen::VectorXd distances = cartan::GeodesicDistance(
-      *surface->Mesh, *surface->Positions, seeds, distance, context.Part(0.3, 1.0));
-    for (Eigen::Index v = 0; v < distances.size(); ++v)
-    {
-      mask[v] |= distances[v] <= distance;
-    }
-  }
+  cartan::GrowOverCopies(input, *surface, rings, distance, mask, context.Part(0.3, 1.0));
   return surface;
 }
 

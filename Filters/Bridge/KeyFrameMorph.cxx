@@ -2,6 +2,7 @@
 #include "Bridge/KeyFrameMorph.h"
 
 #include "Bridge/HandleArrays.h"
+#include "Bridge/JoinedCopies.h"
 #include "Bridge/KeyArrays.h"
 #include "Bridge/MatchedSurfaces.h"
 #include "Bridge/PointArrays.h"
@@ -103,6 +104,10 @@ Points PositionsAt(const MorphPlace& at, vtkPolyData* first, const MorphOptions&
     run.Warn(prepared.Volume->GetWarning());
     run.Warn(prepared.Volume->Close(at.GetParameter(), positions));
   }
+  Surface surface = prepared.First;
+  surface.Positions = std::make_shared<const Points>(prepared.Keys.Positions.front());
+  run.Warn(DescribePartedCopies(first, surface, positions,
+    "choose Method Linear, which keeps them together, or one of the deformations."));
   return positions;
 }
 

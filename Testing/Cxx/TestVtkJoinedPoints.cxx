@@ -3,16 +3,21 @@
 #include "PrepareShapes.h"
 
 #include "vtkAsRigidAsPossibleDeformation.h"
+#include "vtkDiscreteForms.h"
+#include "vtkFrameReconstruction.h"
 #include "vtkLaplacianDeformation.h"
+#include "vtkMarkHandle.h"
 #include "vtkMultiresolutionDeformation.h"
 #include "vtkPoissonDeformation.h"
 #include "vtkRestoreSurface.h"
 #include "vtkRotationInvariantDeformation.h"
 #include "vtkShapePreservingDeformation.h"
 #include "vtkSimilarityDeformation.h"
+#include "vtkSurfaceMorph.h"
 
 #include "vtkCellArray.h"
 #include "vtkIdTypeArray.h"
+#include "vtkTable.h"
 
 /// Copies that Prepare Surface makes of a point are held together when the surface is
 /// deformed.
@@ -76,6 +81,21 @@ std::vector<vtkSmartPointer<vtkSurfaceDeformation>> Methods()
     vtkSmartPointer<vtkLaplacianDeformation>::New(), vtkSmartPointer<vtkPoissonDeformation>::New(),
     vtkSmartPointer<vtkMultiresolutionDeformation>::New(),
     vtkSmartPointer<vtkAsRigidAsPossibleDeformation>::New() };
+}
+
+/// The points that have copies, in increasing order.
+std::vector<vtkIdType> CopiesIn(vtkPolyData* prepared)
+{
+  vtkDataArray* joined = prepared->GetPointData()->GetArray("JoinedPoints");
+  std::vector<vtkIdType> copies;
+  for (vtkIdType v = 0; v < prepared->GetNumberOfPoints(); ++v)
+  {
+    if (joined->GetTuple1(v) >= 0.0)
+    {
+      copies.push_back(v);
+    }
+  }
+  return copies;
 }
 
 /// How far the farthest point of the block is from the joint, of what it was.
@@ -226,5 +246,94 @@ TEST(JoinedPoints, AdviceOnHandlesThatDisagree)
   mark(off, false);
   deform->SetInputData(off);
   deform.Works();
+}
+
+TEST(JoinedPoints, RegionsGrowFromCopyToCopy)
+{
+  const auto prepared = vtktest::Prepared(BarWithBlock(false));
+  const auto copies = CopiesIn(prepared);
+  ASSERT_EQ(copies.size(), 2u);
+  const auto countMarked = [&](int rings, double distance)
+  {
+    vtkNew<vtkMarkHandle> mark;
+    mark->SetInputData(prepared);
+    mark->SetHandleArrayName("Region");
+    mark->SetPointId(0, copies[0]);
+    mark->SetRegionSourceToSelection();
+    mark->SetGrowRings(rings);
+    mark->SetGrowDistance(distance);
+    mark->Update();
+    int onBlock = 0;
+    vtkDataArray* region = mark->GetOutput()->GetPointData()->GetArray("Region");
+    for (vtkIdType v = 0; v < prepared->GetNumberOfPoints(); ++v)
+    {
+      onBlock += region->GetTuple1(v) != 0.0 && prepared->GetPoint(v)[0] > 0.5 + 1e-9;
+    }
+    return onBlock;
+  };
+  EXPECT_EQ(countMarked(0, 0.0), 0);
+  EXPECT_GE(countMarked(1, 0.0), 3);
+  EXPECT_GE(countMarked(0, 0.6), 3);
+  EXPECT_GT(countMarked(100, 0.0), countMarked(1, 0.0));
+
+  prepared->GetPointData()->RemoveArray("JoinedPoints");
+  EXPECT_EQ(countMarked(100, 10.0), 0);
+}
+
+TEST(JoinedPoints, AdviceWhereMorphsPartCopies)
+{
+  const auto first = vtktest::Prepared(BarWithBlock(false));
+  Advised<vtkRotationInvariantDeformation> deform;
+  deform->SetInputData(first);
+  BendEnd(deform.Get());
+  const auto last = deform.Works();
+  Advised<vtkSurfaceMorph> morph;
+  morph->AddInputData(first);
+  morph->AddInputData(last);
+  morph->SetParameter(0.5);
+  morph.Warns({ "1 point", "JoinedPoints",
+    Advice("choose Method Linear, which keeps them together, or one of the deformations.") });
+  morph->SetMethodToLinear();
+  const auto result = morph.Works();
+  const auto copies = CopiesIn(first);
+  EXPECT_LT(
+    (Eigen::Vector3d(result->GetPoint(copies[0])) - Eigen::Vector3d(result->GetPoint(copies[1])))
+      .norm(),
+    1e-12);
+}
+
+TEST(JoinedPoints, AdviceWhereReconstructionsPartCopies)
+{
+  const auto prepared = vtktest::Prepared(BarWithBlock(false));
+  vtkNew<vtkDiscreteForms> forms;
+  forms->SetInputData(prepared);
+  forms->Update();
+  // All lengths grow, so that points that are held elsewhere do not keep copies together.
+  const auto table = forms->GetFormsTable();
+  for (const char* name : { "Length", "Height" })
+  {
+    auto* column = vtkDataArray::SafeDownCast(table->GetColumnByName(name));
+    for (vtkIdType row = 0; row < column->GetNumberOfTuples(); ++row)
+    {
+      column->SetTuple1(row, 1.3 * column->GetTuple1(row));
+    }
+  }
+  const auto surface = vtktest::CopyOf(forms->GetOutput());
+  const auto copies = CopiesIn(surface);
+  const auto hold = [&](vtkIdType ofBar, vtkIdType ofBlock)
+  {
+    vtktest::AddArray(surface, "Held", 1,
+      [=](vtkIdType v, double* value) { *value = v == ofBar || v == ofBlock ? 1.0 : 0.0; });
+    surface->Modified();
+  };
+  Advised<vtkFrameReconstruction> reconstruction;
+  reconstruction->SetInputData(0, surface);
+  reconstruction->SetInputData(1, table);
+  reconstruction->SetConstraintArrayName("Held");
+  hold(0, surface->GetNumberOfPoints() - 1);
+  reconstruction.Warns({ "1 point", "JoinedPoints",
+    Advice("hold one copy of each in every part with a constraint array.") });
+  hold(copies[0], copies[1]);
+  reconstruction.Works();
 }
 }
