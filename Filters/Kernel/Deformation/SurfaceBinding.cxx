@@ -214,12 +214,7 @@ int SurfaceBinding::VertexOf(Eigen::Index query) const
 
 std::size_t SurfaceBinding::GetBytes() const
 {
-  std::size_t bytes =
-    TotalBytes(this->Queries, this->RestSources, this->Distances, this->Tree.GetNodes());
-  for (const std::vector<Share>& shares : this->Shares)
-  {
-    bytes += sizeof(shares) + BytesOf(shares);
-  }
-  return bytes;
+  return TotalBytes(
+    this->Queries, this->RestSources, this->Distances, this->Tree.GetNodes(), this->Shares);
 }
 }
