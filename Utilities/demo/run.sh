@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the demo, or what a word asks for instead, with the plugin and the Python module of a
-# build folder: run.sh BUILD [--compare | --spectrum | --merge | --landmarks].
+# build folder: run.sh BUILD [--compare | --spectrum | --merge | --examples | --landmarks].
 # Utilities/demo.sh and the target `demo` call it.
 set -euo pipefail
 build=$(realpath "$1")
@@ -27,7 +27,7 @@ export DISPLAY
 
 python_module=$build/lib/python3.11/site-packages
 if [ $# -gt 1 ]; then
-  # compare.py, spectrum.py or merge.py.
+  # compare.py and so on.
   PYTHONPATH=$python_module:$PYTHONPATH pvpython "Utilities/demo/${2#--}.py" "$build"
   exit
 fi
