@@ -52,7 +52,8 @@ Eigen::VectorXd LocalVolumesOf(const cartan::HandleProblem& problem,
   const cartan::VolumeModel& model, const cartan::LocalVolumes& volumes,
   const cartan::Points& positions, const cartan::ExecutionContext& context)
 {
-  std::vector<char> enclosesVolume(model.Names.size());
+  // A part that has gone with its slivers encloses nothing.
+  std::vector<char> enclosesVolume(problem.GetWhole()->NumberOfComponents(), 0);
   for (std::size_t c = 0; c < model.Names.size(); ++c)
   {
     enclosesVolume[model.Names[c]] = model.EnclosesVolume[c];

@@ -230,26 +230,6 @@ TEST(SliverRemoval, MechanicalPartsKeepTheirSize)
   }
 }
 
-TEST(SliverRemoval, ComponentsKeepTheirNumbers)
-{
-  // The first vertex of the first component would be taken out otherwise.
-  Shape cap = Tube();
-  const int added = SplitTriangle(cap, MiddleTriangle(cap), { 0.4995, 0.4995, 0.001 });
-  cap.Positions.row(0).swap(cap.Positions.row(added));
-  for (int i = 0; i < cap.Faces.size(); ++i)
-  {
-    int& v = cap.Faces.data()[i];
-    v = v == 0 ? added : v == added ? 0 : v;
-  }
-  const HandleProblem problem = ProblemOf(shapes::Union(cap, Tube()));
-  const HandleProblem without = cartan::WithoutSlivers(problem);
-  ASSERT_NE(without.Mesh, problem.Mesh);
-  for (int v = 0; v < problem.Mesh->NumberOfVertices(); ++v)
-  {
-    EXPECT_EQ(without.Mesh->Component(v), problem.Mesh->Component(v));
-  }
-}
-
 TEST(SliverRemoval, CapsOfHandlesAreNotFelt)
 {
   // Of the moving handle's edge next to the free vertices.

@@ -183,11 +183,13 @@ TEST(VtkSurfaceFilter, WarnsAtEachUpdate)
 
 TEST(VtkSurfaceFilter, RefusesResultsOutsideThePrecision)
 {
-  const auto bar = vtktest::MakePolyData(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 }), VTK_FLOAT);
+  // So large that a motion out of the range is not large beside it.
+  const shapes::Shape shape = shapes::Bar(2, 2, 8, { 1e37, 1e37, 4e37 });
+  const auto bar = vtktest::MakePolyData(shape, VTK_FLOAT);
   vtktest::AddHandles(
-    bar, [](const Eigen::Vector3d& p) { return p.z() < 0.6 ? 1
-                                          : p.z() > 3.4    ? 2
-                                                           : 0; });
+    bar, [](const Eigen::Vector3d& p) { return p.z() < 0.6e37 ? 1
+                                          : p.z() > 3.4e37    ? 2
+                                                              : 0; });
   vtkNew<vtkRotationInvariantDeformation> deform;
   const auto log = vtktest::Observe(deform);
   const auto shift = vtkSmartPointer<vtkHandleMotion>::New();
@@ -200,7 +202,7 @@ TEST(VtkSurfaceFilter, RefusesResultsOutsideThePrecision)
 
   // The advice works.
   log->Clear();
-  const auto precise = vtktest::MakePolyData(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 }));
+  const auto precise = vtktest::MakePolyData(shape);
   precise->GetPointData()->ShallowCopy(bar->GetPointData());
   deform->SetInputData(precise);
   deform->Update();
