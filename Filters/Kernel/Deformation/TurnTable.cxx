@@ -91,6 +91,7 @@ Eigen::VectorXd TurnTable::ModeSizes(
 void TurnTable::ChooseModes(const TurnsOfAngle& turns, double tolerance)
 {
   std::vector<Mode> all;
+  all.reserve(NumberOfNodes);
   for (int order = 0; order < NumberOfNodes; ++order)
   {
     all.push_back({ order, order % 2 == 0 });
@@ -278,6 +279,7 @@ void TurnTable::Evaluate(double angle, const Eigen::Vector3d& axis,
   const Eigen::VectorXf polynomials = this->Polynomials(angle);
   const Eigen::Vector3f unit = axis.cast<float>();
   std::vector<Eigen::Vector3f> shifts;
+  shifts.reserve(static_cast<std::size_t>(this->NumberOfHandles));
   for (int k = 0; k < this->NumberOfHandles; ++k)
   {
     shifts.push_back(translations[static_cast<std::size_t>(k)].cast<float>());
