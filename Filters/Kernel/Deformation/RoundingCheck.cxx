@@ -31,7 +31,17 @@ HandleProblem WithMovedPoints(HandleProblem problem)
 
 std::string DescribeLostDigits(const HandleProblem& problem, const DeformedSurface& result)
 {
-  const double size = BoundingDiagonal(*problem.Rest, problem.GetWhole()->GetTriangles());
+  // At each motion: one edge is enough to see that a motion is not far, in a single pass.
+  const Triangles& triangles = problem.GetWhole()->GetTriangles();
+  const double edge = triangles.rows() > 0
+    ? (problem.Rest->row(triangles(0, 0)) - problem.Rest->row(triangles(0, 1))).norm()
+    : 0.0;
+  const double way = std::sqrt(3.0) * (result.Positions - *problem.Rest).cwiseAbs().maxCoeff();
+  if (way <= FarthestMotion * edge)
+  {
+    return {};
+  }
+  const double size = BoundingDiagonal(*problem.Rest, triangles);
   const double farthest = (result.Positions - *problem.Rest).rowwise().norm().maxCoeff();
   if (!(farthest > FarthestMotion * size))
   {
