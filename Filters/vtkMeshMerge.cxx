@@ -190,11 +190,8 @@ void vtkMeshMerge::SetMotionRow(int row, double id, double scaleX, double scaleY
     target.Id = id;
     this->Modified();
   }
-  target.Motion->SetScale(scaleX, scaleY, scaleZ);
-  target.Motion->SetAngle(angle);
-  target.Motion->SetAxis(axisX, axisY, axisZ);
-  target.Motion->SetCenter(centerX, centerY, centerZ);
-  target.Motion->SetTranslation(translationX, translationY, translationZ);
+  target.SetMotion(angle, { scaleX, scaleY, scaleZ }, { axisX, axisY, axisZ },
+    { centerX, centerY, centerZ }, { translationX, translationY, translationZ });
 }
 
 vtkMTimeType vtkMeshMerge::GetMTime()

@@ -7,6 +7,17 @@
 
 namespace cartan
 {
+void MotionTable::Row::SetMotion(double angle, const Eigen::Vector3d& scale,
+  const Eigen::Vector3d& axis, const Eigen::Vector3d& center,
+  const Eigen::Vector3d& translation) const
+{
+  this->Motion->SetScale(scale[0], scale[1], scale[2]);
+  this->Motion->SetAngle(angle);
+  this->Motion->SetAxis(axis[0], axis[1], axis[2]);
+  this->Motion->SetCenter(center[0], center[1], center[2]);
+  this->Motion->SetTranslation(translation[0], translation[1], translation[2]);
+}
+
 void MotionTable::ResizeRows(int count)
 {
   this->Rows.resize(count);

@@ -19,6 +19,10 @@ struct MotionTable
   {
     double Id = 0.0;
     vtkSmartPointer<vtkHandleMotion> Motion;
+
+    /// Scale, angle, axis, center and translation of the motion.
+    void SetMotion(double angle, const Eigen::Vector3d& scale, const Eigen::Vector3d& axis,
+      const Eigen::Vector3d& center, const Eigen::Vector3d& translation) const;
   };
 
   std::map<int, vtkSmartPointer<vtkHandleMotion>> ById;
