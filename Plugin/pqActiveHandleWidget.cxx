@@ -5,6 +5,7 @@
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqDataRepresentation.h"
+#include "pqHandleLabels.h"
 #include "pqHandleMotions.h"
 #include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
@@ -29,6 +30,7 @@ pqActiveHandleWidget::pqActiveHandleWidget(
   , Choice(new QComboBox(this))
   , Message(new QLabel(this))
   , Mark(new QPushButton(tr("Mark Both Ends"), this))
+  , Labels(new pqHandleLabels(proxy, this))
 {
   this->Choice->setObjectName("Choice");
   this->Message->setObjectName("Message");
@@ -43,8 +45,9 @@ pqActiveHandleWidget::pqActiveHandleWidget(
   layout->addWidget(this->Message);
   layout->addWidget(this->Mark);
 
-  QObject::connect(
-    this->Choice, qOverload<int>(&QComboBox::activated), this, &pqActiveHandleWidget::choose);
+  QObject::connect(this->Choice, qOverload<int>(&QComboBox::activated), this,
+    [this](int index) { this->choose(this->Choice->itemData(index).toInt()); });
+  QObject::connect(this->Labels, &pqHandleLabels::clicked, this, &pqActiveHandleWidget::choose);
   QObject::connect(this->Mark, &QPushButton::clicked, this, &pqActiveHandleWidget::markEnds);
   pqCoreUtilities::connect(
     proxy->GetProperty("HandleBounds"), vtkCommand::ModifiedEvent, this, SLOT(listHandles()));
@@ -61,6 +64,24 @@ void pqActiveHandleWidget::setHandle(int id)
     this->listHandles();
     Q_EMIT this->handleChanged();
   }
+}
+
+void pqActiveHandleWidget::select()
+{
+  this->Superclass::select();
+  this->Labels->setView(this->view());
+}
+
+void pqActiveHandleWidget::deselect()
+{
+  this->Superclass::deselect();
+  this->Labels->setView(nullptr);
+}
+
+void pqActiveHandleWidget::setView(pqView* view)
+{
+  this->Superclass::setView(view);
+  this->Labels->setView(this->isSelected() ? view : nullptr);
 }
 
 void pqActiveHandleWidget::listHandles()
@@ -83,11 +104,11 @@ void pqActiveHandleWidget::listHandles()
       ? tr("The input has no handle. Mark the part that stays and the part that moves.")
       : QString());
   this->Message->setVisible(ids.empty());
+  this->Labels->setHandles(ids);
 }
 
-void pqActiveHandleWidget::choose(int index)
+void pqActiveHandleWidget::choose(int id)
 {
-  const int id = this->Choice->itemData(index).toInt();
   if (id == this->Handle)
   {
     return;

@@ -4,7 +4,8 @@
  * @brief the handle that a deformation's panel moves, one of those in the input
  *
  * Another choice takes effect at once and moves nothing: each handle keeps its motion,
- * see ActivateHandle(). If the input has no handle, the widget says so and offers to mark
+ * see ActivateHandle(). A handle is chosen in a list, or by a click on its number in the view.
+ * If the input has no handle, the widget says so and offers to mark
  * both ends of the surface, by two Mark Handle filters before the deformation.
  *
  * In XML: an IntVectorProperty with panel_widget="cartan_active_handle" of a filter with
@@ -18,6 +19,7 @@
 class QComboBox;
 class QLabel;
 class QPushButton;
+class pqHandleLabels;
 
 class pqActiveHandleWidget : public pqPropertyWidget
 {
@@ -32,6 +34,10 @@ public:
   int handle() const { return this->Handle; }
   void setHandle(int id);
 
+  void select() override;
+  void deselect() override;
+  void setView(pqView* view) override;
+
 Q_SIGNALS:
   void handleChanged();
 
@@ -40,13 +46,14 @@ private Q_SLOTS:
   void listHandles();
 
 private:
-  void choose(int index);
+  void choose(int id);
   void markEnds();
 
   int Handle = 1;
   QComboBox* Choice;
   QLabel* Message;
   QPushButton* Mark;
+  pqHandleLabels* Labels;
 };
 
 #endif

@@ -185,8 +185,8 @@ void WriteAxisAndAngle(vtkSMProxy* motion, const Row& row)
   motion->UpdateVTKObjects();
 }
 
-/// x' = Center + R S (x - Center) + Translation is x' = Position + R S x.
-void WriteBox(vtkSMProxy* box, const Row& row)
+/// x' = Center + R S (x - Center) + Translation.
+vtkSmartPointer<vtkMatrix4x4> MapOf(const Row& row)
 {
   vtkNew<vtkHandleMotion> motion;
   motion->SetScale(&row[Scale]);
@@ -194,8 +194,27 @@ void WriteBox(vtkSMProxy* box, const Row& row)
   motion->SetAxis(&row[Axis]);
   motion->SetCenter(&row[Center]);
   motion->SetTranslation(&row[Translation]);
-  vtkNew<vtkMatrix4x4> map;
+  auto map = vtkSmartPointer<vtkMatrix4x4>::New();
   motion->GetTransform(map);
+  return map;
+}
+
+/// The map of the active handle's motion.
+vtkSmartPointer<vtkMatrix4x4> MapOf(vtkSMProxy* motion, int id)
+{
+  auto map = vtkSmartPointer<vtkMatrix4x4>::New();
+  if (motion && std::strcmp(motion->GetXMLName(), "Matrix") == 0)
+  {
+    Read(motion, "Matrix", map->GetData(), 16);
+    return map;
+  }
+  return MapOf(*ReadMotion(motion, id));
+}
+
+/// With x' = Position + R S x.
+void WriteBox(vtkSMProxy* box, const Row& row)
+{
+  const vtkSmartPointer<vtkMatrix4x4> map = MapOf(row);
   const double position[3] = { map->GetElement(0, 3), map->GetElement(1, 3),
     map->GetElement(2, 3) };
   vtkNew<vtkTransform> rotation;
@@ -313,6 +332,34 @@ vtkBoundingBox HandleBox(vtkSMProxy* filter, int id)
     }
   }
   return {};
+}
+
+std::optional<std::array<double, 3>> HandlePlace(vtkSMProxy* filter, int id)
+{
+  const vtkBoundingBox box = HandleBox(filter, id);
+  if (!box.IsValid())
+  {
+    return {};
+  }
+  std::array<double, 4> place{ 0.0, 0.0, 0.0, 1.0 };
+  box.GetCenter(place.data());
+  if (id == vtkSMUncheckedPropertyHelper(filter, "ActiveHandle").GetAsInt())
+  {
+    vtkSMProxy* motion = vtkSMUncheckedPropertyHelper(filter, "Motion").GetAsProxy();
+    MapOf(motion, id)->MultiplyPoint(place.data(), place.data());
+  }
+  else
+  {
+    std::vector<double> rows = vtkSMUncheckedPropertyHelper(filter, "MotionRows").GetDoubleArray();
+    const auto found = FindRow(rows, id);
+    if (found != rows.end())
+    {
+      Row row;
+      std::copy_n(found, MotionRowLength, row.begin());
+      MapOf(row)->MultiplyPoint(place.data(), place.data());
+    }
+  }
+  return std::array<double, 3>{ place[0], place[1], place[2] };
 }
 
 std::vector<double> NewMotionRow(vtkSMProxy* filter, const std::vector<double>& rows)

@@ -7,7 +7,9 @@
 
 #include <QString>
 
+#include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 class vtkSMProxy;
@@ -24,6 +26,10 @@ std::vector<int> HandlesOf(vtkSMProxy* filter);
 
 /// The box around a handle in the input; not valid if no point belongs to it.
 vtkBoundingBox HandleBox(vtkSMProxy* filter, int id);
+
+/// The center of that box where the motions of the panel, applied or not, take it; nothing if no
+/// point belongs to the handle.
+std::optional<std::array<double, 3>> HandlePlace(vtkSMProxy* filter, int id);
 
 /// A row that moves nothing yet, about the center of a handle: the first that is neither
 /// active nor in one of the rows.

@@ -130,3 +130,29 @@ def boxes_in_view():
     """The boxes that can be dragged in the active view."""
     return [widget for widget in simple.GetActiveView().GetProperty("HiddenRepresentations")
             if "Box" in widget.SMProxy.GetXMLName() and widget.Visibility]
+
+
+
+def label_actors():
+    """The numbers of handles that the active view shows."""
+    renderer = simple.GetActiveView().SMProxy.GetClientSideView().GetNonCompositedRenderer()
+    return [actor for actor in renderer.GetViewProps() if actor.IsA("vtkTextActor")
+            and actor.GetVisibility() and actor.GetInput().strip().isdigit()]
+
+
+def labels_in_view():
+    """Where they are, from 0 to 1 from the upper left."""
+    view = simple.GetActiveView().SMProxy.GetClientSideView()
+    width, height = view.GetRenderWindow().GetSize()
+    places = {}
+    for actor in label_actors():
+        x, y = actor.GetPositionCoordinate().GetComputedDisplayValue(
+            view.GetNonCompositedRenderer())
+        places[int(actor.GetInput())] = (x / width, 1 - y / height)
+    return places
+
+
+def active_label():
+    """The number that is highlighted."""
+    return int(max(label_actors(), key=lambda actor: sum(
+        actor.GetTextProperty().GetBackgroundColor())).GetInput())
