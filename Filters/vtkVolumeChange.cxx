@@ -2,7 +2,6 @@
 #include "vtkVolumeChange.h"
 
 #include "Bridge/FilterRun.h"
-
 #include "Bridge/MatchedSurfaces.h"
 #include "Bridge/NeighborSteps.h"
 #include "Bridge/PointArrays.h"
@@ -37,6 +36,7 @@ vtkStandardNewMacro(vtkVolumeChange);
 namespace
 {
 constexpr double Undefined = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t MostComponentsInFieldData = 16; // each is a line of a chart over time
 
 /// The rows of output 1, one after the other.
 class ChangeTable
@@ -209,22 +209,20 @@ std::string DescribePlace(const Changes& changes, std::size_t component)
     "the other way (Prepare Surface, Alternate Nested)";
 }
 
-void AddComponents(const Changes& changes, ChangeTable& table)
+/// Returns the relative change.
+double AddComponent(const Changes& changes, std::size_t i, ChangeTable& table)
 {
-  for (std::size_t i = 0; i < changes.ComponentsBefore.size(); ++i)
+  const std::string quantity = "Volume of component " + std::to_string(i);
+  if (!changes.ComponentsBefore[i].IsClosed)
   {
-    const std::string quantity = "Volume of component " + std::to_string(i);
-    if (!changes.ComponentsBefore[i].IsClosed)
-    {
-      table.Add(quantity, Undefined, Undefined, Undefined, "open: it encloses no volume");
-      continue;
-    }
-    const double before = WithoutRounding(changes.ComponentsBefore[i]);
-    const double now = WithoutRounding(changes.ComponentsNow[i]);
-    const std::string place = DescribePlace(changes, i);
-    table.Add(
-      quantity, before, now, before > 0.0 && now > 0.0 ? place : DescribeSigns(before, now, place));
+    table.Add(quantity, Undefined, Undefined, Undefined, "open: it encloses no volume");
+    return Undefined;
   }
+  const double before = WithoutRounding(changes.ComponentsBefore[i]);
+  const double now = WithoutRounding(changes.ComponentsNow[i]);
+  const std::string place = DescribePlace(changes, i);
+  return table.Add(
+    quantity, before, now, before > 0.0 && now > 0.0 ? place : DescribeSigns(before, now, place));
 }
 
 double TotalArea(const std::vector<cartan::ComponentVolume>& components)
@@ -282,9 +280,14 @@ std::map<std::string, double> FillTable(const Changes& changes, vtkTable* output
   addMeasure("EdgeLengthMax", changes.Edges.Maximum, changes.Edges.Maximum, edgeNote);
   addMeasure("ShapeDistance", changes.Distance.Total, Undefined,
     "a distance from the reference: Current is the measure");
-  if (changes.ComponentsBefore.size() > 1)
+  const std::size_t components = changes.ComponentsBefore.size();
+  for (std::size_t i = 0; components > 1 && i < components; ++i)
   {
-    AddComponents(changes, table);
+    const double change = AddComponent(changes, i, table);
+    if (components <= MostComponentsInFieldData)
+    {
+      results["RelativeVolumeChange of component " + std::to_string(i)] = change;
+    }
   }
   table.MoveTo(output);
   return results;
@@ -383,8 +386,10 @@ void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun
     this->AddRates(run);
   }
   this->Results = FillTable(changes, run.OutputTable(1));
-  cartan::AddFieldValue(output, "RelativeVolumeChange", this->GetRelativeVolumeChange());
-  cartan::AddFieldValue(output, "ShapeDistance", this->GetShapeDistance());
+  for (const auto& [name, value] : this->Results)
+  {
+    cartan::AddFieldValue(output, name, value);
+  }
 }
 
 void vtkVolumeChange::AddRates(cartan::FilterRun& run) const

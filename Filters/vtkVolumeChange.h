@@ -36,7 +36,9 @@
  *   principal rates of stretching, the logarithms of the stretches from the time step before
  *   to the one after, over the time between the two.
  * `AreaRatio` is the active point scalars, by which viewers color the surface.
- * Field data, one double each: `RelativeVolumeChange`, `ShapeDistance`.
+ * Field data, one double each, as in the table: `RelativeVolumeChange`, `RelativeAreaChange`,
+ * `EdgeLengthRMS`, `EdgeLengthMax`, `ShapeDistance`; with 2 to 16 components
+ * `RelativeVolumeChange of component 0`, ...
  *
  * Ratios are 1 where nothing has changed and at points in no triangle. They are
  * NaN where the reference has zero area or length or no positive local volume.

@@ -141,9 +141,13 @@ TEST_F(VolumeChange, ScalingHasKnownEffects)
   EXPECT_NEAR(cells->GetValue(0), 1.21, 1e-12);
 
   auto* field = this->Filter->GetOutput()->GetFieldData();
-  EXPECT_EQ(field->GetArray("RelativeVolumeChange")->GetComponent(0, 0),
-    this->Filter->GetRelativeVolumeChange());
-  EXPECT_EQ(field->GetArray("ShapeDistance")->GetComponent(0, 0), this->Filter->GetShapeDistance());
+  const auto value = [&](const char* name) { return field->GetArray(name)->GetComponent(0, 0); };
+  EXPECT_EQ(field->GetNumberOfArrays(), 5);
+  EXPECT_EQ(value("RelativeVolumeChange"), this->Filter->GetRelativeVolumeChange());
+  EXPECT_EQ(value("RelativeAreaChange"), this->Filter->GetRelativeAreaChange());
+  EXPECT_EQ(value("EdgeLengthRMS"), this->Filter->GetEdgeLengthRMS());
+  EXPECT_EQ(value("EdgeLengthMax"), this->Filter->GetEdgeLengthMax());
+  EXPECT_EQ(value("ShapeDistance"), this->Filter->GetShapeDistance());
 }
 
 TEST_F(VolumeChange, RigidMotionChangesNothing)
@@ -186,6 +190,10 @@ TEST_F(VolumeChange, ComponentsAreReportedOneByOne)
   EXPECT_NEAR(rows["Volume"].Current, 65.0, 1e-12);
   EXPECT_NEAR(rows["Volume of component 0"].RelativeChange, 7.0, 1e-12);
   EXPECT_NEAR(rows["Volume of component 1"].RelativeChange, 0.0, 1e-12);
+  auto* field = this->Filter->GetOutput()->GetFieldData();
+  const char* name = "RelativeVolumeChange of component 0";
+  EXPECT_NEAR(field->GetArray(name)->GetComponent(0, 0), 7.0, 1e-12);
+  EXPECT_EQ(field->GetNumberOfArrays(), 7);
 
   // With one of them open there is no total, but the other keeps its volume.
   const surfaces::Surface half = surfaces::Union(surfaces::OpenCylinder(8, 2), unit);

@@ -156,3 +156,14 @@ def active_label():
     """The number that is highlighted."""
     return int(max(label_actors(), key=lambda actor: sum(
         actor.GetTextProperty().GetBackgroundColor())).GetInput())
+
+
+def chart_lines():
+    """The lines that the active view, a chart, shows: what they are called, and their values."""
+    chart = simple.GetActiveView()
+    source = simple.GetActiveSource()
+    shown_series = list(simple.GetDisplayProperties(source, chart).SeriesVisibility)
+    labels = list(simple.GetDisplayProperties(source, chart).SeriesLabel)
+    names = dict(zip(labels[::2], labels[1::2]))
+    table = servermanager.Fetch(source)
+    return {names[series]: vtk_to_numpy(table.GetColumnByName(series)) for series in shown_series}
