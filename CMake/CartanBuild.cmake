@@ -52,7 +52,19 @@ function (cartan_wrap_python)
     configure_file("${source}" "${CMAKE_BINARY_DIR}/${CARTAN_PYTHON_DESTINATION}/vtkcartan/${name}"
       COPYONLY)
   endforeach ()
-  install(FILES ${sources} DESTINATION "${CARTAN_PYTHON_DESTINATION}/vtkcartan" COMPONENT python)
+
+  # Type stubs of the wrapped classes.
+  find_package(Python3 QUIET REQUIRED COMPONENTS Interpreter)
+  set(folder "${CMAKE_BINARY_DIR}/${CARTAN_PYTHON_DESTINATION}/vtkcartan")
+  add_custom_command(OUTPUT "${folder}/vtkCartan.pyi"
+    COMMAND "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/CMake/generate_stubs.py"
+      "${folder}" vtkCartan
+    DEPENDS vtkCartanPython "${CMAKE_CURRENT_SOURCE_DIR}/CMake/generate_stubs.py"
+    VERBATIM)
+  add_custom_target(CartanStubs ALL DEPENDS "${folder}/vtkCartan.pyi")
+
+  install(FILES ${sources} "${folder}/vtkCartan.pyi"
+    DESTINATION "${CARTAN_PYTHON_DESTINATION}/vtkcartan" COMPONENT python)
 endfunction ()
 
 function (cartan_build_plugin)
