@@ -28,5 +28,7 @@ else ()
   endif ()
 endif ()
 find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_components}
-  OPTIONAL_COMPONENTS PythonInterpreter) # the plugin's, for traces
+  OPTIONAL_COMPONENTS
+    PythonInterpreter   # the plugin's, for traces
+    InteractionWidgets) # the tests'
 message(STATUS "VTK ${VTK_VERSION} in ${VTK_DIR}; ParaView plugin: ${CARTAN_BUILD_PLUGIN}")
