@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
 
 import cartan_testing
-from plugin_testing import write
+from plugin_testing import pixels, write
 
 
 def say(text):
@@ -131,6 +131,25 @@ def boxes_in_view():
     return [widget for widget in simple.GetActiveView().GetProperty("HiddenRepresentations")
             if "Box" in widget.SMProxy.GetXMLName() and widget.Visibility]
 
+
+def check_handle_colors(marking):
+    """Handles 1 and 2 are blue and orange, free points gray, in the map and in the picture."""
+    display = simple.GetDisplayProperties(marking)
+    check(list(display.ColorArrayName) == ["POINTS", "Handle"], "colored by handles")
+    colors = display.LookupTable
+    check(colors.InterpretValuesAsCategories == 1, "by categories")
+    check(list(colors.Annotations)[:6] == ["0", "free", "1", "1", "2", "2"], "names")
+    expected = [(0.8, 0.8, 0.8), (0.0, 0.447, 0.698), (0.902, 0.624, 0.0)]
+    check_close(list(colors.IndexedColors)[:9], sum(expected, ()), "colors of the map")
+    simple.Show(marking)
+    simple.SetActiveSource(None)
+    display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
+    picture = cartan_testing.output_path("handle-colors.png")
+    simple.SaveScreenshot(picture, simple.GetActiveView())
+    found = pixels(picture).astype(int)
+    for color in expected:
+        equal = abs(found - numpy.array(color) * 255).max(axis=1) < 1.5
+        check(equal.mean() > 0.001, f"{color} in the picture: {equal.sum()} of {len(found)} pixels")
 
 
 def label_actors():

@@ -3,7 +3,9 @@ import os
 
 from paraview import servermanager, simple
 from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING
+from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 import cartan_testing
@@ -52,6 +54,14 @@ def refresh(proxy):
     """Updates the proxy and its information properties."""
     proxy.UpdatePipeline()
     proxy.UpdatePropertyInformation()
+
+
+def pixels(path):
+    """The colors of a picture, a row for each pixel."""
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
 
 
 class Messages:
