@@ -47,9 +47,10 @@ endif ()
 
 find_program(CARTAN_PVPYTHON pvpython HINTS "${VTK_PREFIX_PATH}/bin")
 find_program(CARTAN_PVBATCH pvbatch HINTS "${VTK_PREFIX_PATH}/bin")
+find_program(CARTAN_PVSERVER pvserver HINTS "${VTK_PREFIX_PATH}/bin")
 find_program(CARTAN_PARAVIEW paraview HINTS "${VTK_PREFIX_PATH}/bin")
 find_program(CARTAN_XVFB_RUN xvfb-run)
-mark_as_advanced(CARTAN_PVPYTHON CARTAN_PVBATCH CARTAN_PARAVIEW CARTAN_XVFB_RUN)
+mark_as_advanced(CARTAN_PVPYTHON CARTAN_PVBATCH CARTAN_PVSERVER CARTAN_PARAVIEW CARTAN_XVFB_RUN)
 # A screen of its own for each test that draws. VTK probes the screen with a
 # connection that it closes again; without -noreset the server would then start
 # over, and lose the next connection if it comes too soon.

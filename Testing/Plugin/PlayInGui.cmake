@@ -1,5 +1,6 @@
 # cmake -D... -P PlayInGui.cmake script: plays a recorded test in ParaView. If the test has saved a
-# trace and states (gui_testing.py), they are replayed without the window.
+# trace and states (gui_testing.py), they are replayed without the window. ParaView is connected to
+# a pvserver if the name of the script begins with Remote.
 #
 # ParaView starts with settings of its own, made anew, so that nothing depends
 # on the user or on the run before. Untold, it would open with a welcome dialog
@@ -18,8 +19,13 @@ set(ENV{XDG_CONFIG_HOME} "${home}")
 
 get_filename_component(plugin_folder "${PLUGIN}" DIRECTORY)
 get_filename_component(plugin_name "${PLUGIN}" NAME_WE)
+set(load "--plugin-search-paths=${plugin_folder}" "--plugins=${plugin_name}")
+set(serve "")
+if (name MATCHES "^Remote")
+  set(serve "${PYTHON}" "${CMAKE_CURRENT_LIST_DIR}/serve.py" "${PVSERVER}" ${load} --)
+endif ()
 execute_process(
-  COMMAND "${PARAVIEW}" "--plugin-search-paths=${plugin_folder}" "--plugins=${plugin_name}"
+  COMMAND ${serve} "${PARAVIEW}" ${load}
     "--data-directory=${DATA}" "--baseline-directory=${BASELINE}" "--test-directory=${OUTPUT}"
     "--test-script=${script}" --exit
   RESULT_VARIABLE result)

@@ -1,22 +1,14 @@
 """The filters run in a pvserver that a client is connected to: the same numbers and picture."""
 import os
 import shutil
-import socket
-import subprocess
 import sys
 
 import cartan_testing
 from paraview import simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
 
-from plugin_testing import check, check_close, mark_ends, open_bar, output, refresh
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
+from plugin_testing import check, check_close, mark_ends, open_bar, output, pixels, refresh
+from serve import Server
 
 
 def find_pvserver():
@@ -54,22 +46,14 @@ def draw(surface):
     simple.ResetCamera(view)
     path = cartan_testing.output_path("TestServer.png")
     simple.SaveScreenshot(path, view)
-    reader = vtkPNGReader()
-    reader.SetFileName(path)
-    reader.Update()
-    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    return pixels(path)
 
 
 simple.LoadPlugin(cartan_testing.plugin_path(), remote=False)
 here = use_filters()
-port = free_port()
-server = subprocess.Popen([find_pvserver(), "--server-port=%d" % port],
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+server = Server(find_pvserver())
 try:
-    # The server is ready once it has said where it listens.
-    while b"Accepting connection" not in server.stdout.readline():
-        check(server.poll() is None, "pvserver does not start")
-    simple.Connect("localhost", port)
+    simple.Connect("localhost", server.port)
     for remote in (True, False):
         simple.LoadPlugin(cartan_testing.plugin_path(), remote=remote)
     there = use_filters()

@@ -186,3 +186,9 @@ def chart_lines():
     names = dict(zip(labels[::2], labels[1::2]))
     table = servermanager.Fetch(source)
     return {names[series]: vtk_to_numpy(table.GetColumnByName(series)) for series in shown_series}
+
+
+def save_picture(test):
+    """Writes what the active view shows; replay.py draws it again."""
+    simple.SaveScreenshot(cartan_testing.output_path(test + "/picture.png"),
+                          simple.GetActiveView(), ImageResolution=[300, 200])
