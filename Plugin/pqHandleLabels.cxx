@@ -163,13 +163,17 @@ void pqHandleLabels::place()
     return;
   }
   const int active = this->active();
+  const std::map<int, std::array<double, 3>> places = HandlePlaces(this->Filter, Most);
   for (const Label& label : this->Labels)
   {
-    const auto place = HandlePlace(this->Filter, label.Id);
-    label.Actor->SetVisibility(place && IsInFront(this->Renderer->GetActiveCamera(), *place));
-    if (place)
+    const auto found = places.find(label.Id);
+    const bool isShown =
+      found != places.end() && IsInFront(this->Renderer->GetActiveCamera(), found->second);
+    label.Actor->SetVisibility(isShown);
+    if (isShown)
     {
-      label.Actor->GetPositionCoordinate()->SetValue((*place)[0], (*place)[1], (*place)[2]);
+      const std::array<double, 3>& place = found->second;
+      label.Actor->GetPositionCoordinate()->SetValue(place[0], place[1], place[2]);
     }
     Highlight(label.Actor->GetTextProperty(), label.Id == active);
     if (label.Id == active && this->OnTop != active)

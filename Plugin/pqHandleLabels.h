@@ -33,7 +33,7 @@ public:
   /// The largest number of handles that have labels; more would hide the surface.
   static constexpr std::size_t Most = 100;
 
-  /// For a filter with the properties that HandlePlace() reads.
+  /// For a filter with the properties that HandlePlaces() reads.
   pqHandleLabels(vtkSMProxy* filter, QObject* parent);
   ~pqHandleLabels() override;
 

@@ -334,32 +334,28 @@ vtkBoundingBox HandleBox(vtkSMProxy* filter, int id)
   return {};
 }
 
-std::optional<std::array<double, 3>> HandlePlace(vtkSMProxy* filter, int id)
+std::map<int, std::array<double, 3>> HandlePlaces(vtkSMProxy* filter, std::size_t most)
 {
-  const vtkBoundingBox box = HandleBox(filter, id);
-  if (!box.IsValid())
+  const std::vector<double> boxes = vtkSMPropertyHelper(filter, "HandleBounds").GetDoubleArray();
+  std::vector<double> rows = vtkSMUncheckedPropertyHelper(filter, "MotionRows").GetDoubleArray();
+  const int active = vtkSMUncheckedPropertyHelper(filter, "ActiveHandle").GetAsInt();
+  std::map<int, std::array<double, 3>> places;
+  for (std::size_t i = 0; i + BoxLength <= boxes.size() && places.size() < most; i += BoxLength)
   {
-    return {};
-  }
-  std::array<double, 4> place{ 0.0, 0.0, 0.0, 1.0 };
-  box.GetCenter(place.data());
-  if (id == vtkSMUncheckedPropertyHelper(filter, "ActiveHandle").GetAsInt())
-  {
-    vtkSMProxy* motion = vtkSMUncheckedPropertyHelper(filter, "Motion").GetAsProxy();
-    MapOf(motion, id)->MultiplyPoint(place.data(), place.data());
-  }
-  else
-  {
-    std::vector<double> rows = vtkSMUncheckedPropertyHelper(filter, "MotionRows").GetDoubleArray();
+    const int id = static_cast<int>(boxes[i]);
+    Row row = RestRow(id);
     const auto found = FindRow(rows, id);
     if (found != rows.end())
     {
-      Row row;
       std::copy_n(found, MotionRowLength, row.begin());
-      MapOf(row)->MultiplyPoint(place.data(), place.data());
     }
+    vtkSMProxy* motion = vtkSMUncheckedPropertyHelper(filter, "Motion").GetAsProxy();
+    std::array<double, 4> place{ 0.0, 0.0, 0.0, 1.0 };
+    vtkBoundingBox(&boxes[i + 1]).GetCenter(place.data());
+    (id == active ? MapOf(motion, id) : MapOf(row))->MultiplyPoint(place.data(), place.data());
+    places[id] = { place[0], place[1], place[2] };
   }
-  return std::array<double, 3>{ place[0], place[1], place[2] };
+  return places;
 }
 
 std::vector<double> NewMotionRow(vtkSMProxy* filter, const std::vector<double>& rows)

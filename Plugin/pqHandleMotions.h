@@ -8,8 +8,9 @@
 #include <QString>
 
 #include <array>
+#include <cstddef>
 #include <functional>
-#include <optional>
+#include <map>
 #include <vector>
 
 class vtkSMProxy;
@@ -27,9 +28,9 @@ std::vector<int> HandlesOf(vtkSMProxy* filter);
 /// The box around a handle in the input; not valid if no point belongs to it.
 vtkBoundingBox HandleBox(vtkSMProxy* filter, int id);
 
-/// The center of that box where the motions of the panel, applied or not, take it; nothing if no
-/// point belongs to the handle.
-std::optional<std::array<double, 3>> HandlePlace(vtkSMProxy* filter, int id);
+/// The centers of these boxes where the motions of the panel, applied or not, take them: by the
+/// ids of their handles, the first ones if there are more than `most`.
+std::map<int, std::array<double, 3>> HandlePlaces(vtkSMProxy* filter, std::size_t most);
 
 /// A row that moves nothing yet, about the center of a handle: the first that is neither
 /// active nor in one of the rows.
