@@ -17,6 +17,7 @@
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
@@ -28,11 +29,16 @@ pqActiveHandleWidget::pqActiveHandleWidget(
   vtkSMProxy* proxy, vtkSMProperty* property, QWidget* parent)
   : Superclass(proxy, parent)
   , Choice(new QComboBox(this))
+  , Numbers(new QCheckBox(tr("Show Numbers"), this))
   , Message(new QLabel(this))
   , Mark(new QPushButton(tr("Mark Both Ends"), this))
   , Labels(new pqHandleLabels(proxy, this))
 {
   this->Choice->setObjectName("Choice");
+  this->Numbers->setObjectName("Numbers");
+  this->Numbers->setChecked(true);
+  this->Numbers->setToolTip(
+    tr("Shows the numbers of the handles in the view. A click on one makes its handle active."));
   this->Message->setObjectName("Message");
   this->Message->setWordWrap(true);
   this->Mark->setObjectName("Mark");
@@ -42,11 +48,13 @@ pqActiveHandleWidget::pqActiveHandleWidget(
   layout->setMargin(0);
   layout->setSpacing(2);
   layout->addWidget(this->Choice);
+  layout->addWidget(this->Numbers);
   layout->addWidget(this->Message);
   layout->addWidget(this->Mark);
 
   QObject::connect(this->Choice, qOverload<int>(&QComboBox::activated), this,
     [this](int index) { this->choose(this->Choice->itemData(index).toInt()); });
+  QObject::connect(this->Numbers, &QCheckBox::toggled, this, &pqActiveHandleWidget::showLabels);
   QObject::connect(this->Labels, &pqHandleLabels::clicked, this, &pqActiveHandleWidget::choose);
   QObject::connect(this->Mark, &QPushButton::clicked, this, &pqActiveHandleWidget::markEnds);
   pqCoreUtilities::connect(
@@ -69,19 +77,24 @@ void pqActiveHandleWidget::setHandle(int id)
 void pqActiveHandleWidget::select()
 {
   this->Superclass::select();
-  this->Labels->setView(this->view());
+  this->showLabels();
 }
 
 void pqActiveHandleWidget::deselect()
 {
   this->Superclass::deselect();
-  this->Labels->setView(nullptr);
+  this->showLabels();
 }
 
 void pqActiveHandleWidget::setView(pqView* view)
 {
   this->Superclass::setView(view);
-  this->Labels->setView(this->isSelected() ? view : nullptr);
+  this->showLabels();
+}
+
+void pqActiveHandleWidget::showLabels()
+{
+  this->Labels->setView(this->isSelected() && this->Numbers->isChecked() ? this->view() : nullptr);
 }
 
 void pqActiveHandleWidget::listHandles()
@@ -99,6 +112,7 @@ void pqActiveHandleWidget::listHandles()
   }
   this->Choice->setCurrentIndex(this->Choice->findData(this->Handle));
   this->Choice->setVisible(!ids.empty());
+  this->Numbers->setVisible(!ids.empty());
   this->Mark->setVisible(ids.empty());
   this->Message->setText(ids.empty()
       ? tr("The input has no handle. Mark the part that stays and the part that moves.")

@@ -16,6 +16,7 @@
 
 #include "pqPropertyWidget.h"
 
+class QCheckBox;
 class QComboBox;
 class QLabel;
 class QPushButton;
@@ -46,11 +47,13 @@ private Q_SLOTS:
   void listHandles();
 
 private:
+  void showLabels();
   void choose(int id);
   void markEnds();
 
   int Handle = 1;
   QComboBox* Choice;
+  QCheckBox* Numbers;
   QLabel* Message;
   QPushButton* Mark;
   pqHandleLabels* Labels;
