@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Case.h"
 
+#include "Copies.h"
 #include "Defects.h"
 #include "Settings.h"
 #include "Shapes.h"
@@ -245,13 +246,26 @@ void Place(Mesh& mesh, Random& random)
   }
 }
 
-Mesh RandomMesh(Random& random)
+/// The most points of the surfaces of a filter that looks for closest places again and
+/// again; others take what comes.
+std::size_t MostPoints(const std::string& filter)
+{
+  return filter == "CoatingTransfer" ? 100 : 1000000;
+}
+
+/// With `ofJoint` something hangs on a point of it.
+Mesh RandomMesh(Random& random, std::size_t mostPoints, Random* ofJoint)
 {
   Mesh mesh = MakeShape(random);
+  for (int i = 0; i < 10 && mesh.Points.size() > mostPoints; ++i)
+  {
+    mesh = MakeShape(random);
+  }
   if (random.Chance(0.5))
   {
     AddDefects(mesh, random);
   }
+  const Ids copies = ofJoint ? HangOnPoint(mesh, *ofJoint) : Ids();
   if (random.Chance(0.25))
   {
     MixCells(mesh, random);
@@ -263,7 +277,15 @@ Mesh RandomMesh(Random& random)
     RoundToFloat(mesh.Points);
   }
   mesh.Arrays.push_back(IdArray(mesh));
+  if (!copies.empty())
+  {
+    mesh.Arrays.push_back(JoinedPoints(mesh, copies));
+  }
   mesh.Arrays.push_back(RandomHandles(mesh, random));
+  for (const vtkIdType copy : copies)
+  {
+    mesh.Arrays.back().Values.row(copy) = mesh.Arrays.back().Values.row(copies[0]).eval();
+  }
   if (random.Chance(0.15))
   {
     AddNormals(mesh, random);
@@ -277,12 +299,67 @@ int NumberOfOthers(const std::string& filter, Random& random)
   {
     return random.Chance(0.8) ? 1 : random.Integer(2, 4);
   }
+  if (filter == "CoatingTransfer")
+  {
+    return random.Integer(1, 2);
+  }
   if (filter == "CurvatureError" || filter == "DifferentialReconstruction")
   {
     return random.Integer(0, 1);
   }
-  return filter == "VolumeChange" || filter == "RestoreSurface" ? 1 : 0;
+  return filter == "VolumeChange" || filter == "RestoreSurface" || filter == "MeshMerge" ? 1 : 0;
 }
+
+/// Whole numbers of points, 0 but for some.
+Array Numbers(const Mesh& mesh, const std::string& name, const Ids& ids)
+{
+  Array numbers;
+  numbers.Name = name;
+  numbers.IsInteger = true;
+  numbers.Values = Eigen::VectorXd::Zero(mesh.NumberOfPoints());
+  for (std::size_t i = 0; i < ids.size(); ++i)
+  {
+    numbers.Values(ids[i], 0) = static_cast<double>(i + 1);
+  }
+  return numbers;
+}
+
+/// Which points of two surfaces belong together, and where a coating goes.
+void AddCorrespondences(Case& made, Random& random)
+{
+  Mesh& mesh = made.Surface;
+  Ids ids;
+  if (made.Filter == "MeshMerge" && random.Chance(0.5))
+  {
+    const Ids border = BorderPoints(mesh);
+    // The loops run in opposite directions: a third one could cross.
+    for (int i = 0; i < 2 && !border.empty(); ++i)
+    {
+      ids.push_back(random.Pick(border));
+    }
+    mesh.Arrays.push_back(Numbers(mesh, "BoundaryKey", ids));
+  }
+  if (made.Filter == "CoatingTransfer")
+  {
+    for (int i = 0; i < 5; ++i)
+    {
+      ids.push_back(random.Integer(0, static_cast<int>(mesh.NumberOfPoints()) - 1));
+    }
+    mesh.Arrays.push_back(Numbers(mesh, "CorrespondenceKey", ids));
+    if (random.Chance(0.3))
+    {
+      Array region = *mesh.Find("Handle");
+      region.Name = "Region";
+      mesh.Arrays.push_back(region);
+    }
+  }
+}
+}
+
+bool Case::NumbersAnew() const
+{
+  return this->Filter == "PrepareSurface" || this->Filter == "BoundaryLoops" ||
+    this->Filter == "MeshMerge";
 }
 
 bool Case::IsDeformation() const
@@ -341,12 +418,15 @@ Case MakeCase(std::uint64_t seed, const std::string& filter)
   {
     made.Filter = filter;
   }
-  made.Surface = RandomMesh(random);
+  Random ofJoint(seed * 0x9fb21c651e98df25u + 7);
+  const bool hasJoint = made.IsDeformation() && ofJoint.Chance(0.15);
+  made.Surface = RandomMesh(random, MostPoints(made.Filter), hasJoint ? &ofJoint : nullptr);
   if (made.IsDeformation())
   {
     made.Motions = RandomMotions(made.Surface, random);
     AddConstraintArrays(made.Surface, random);
   }
+  AddCorrespondences(made, random);
   const int others = NumberOfOthers(made.Filter, random);
   for (int i = 0; i < others; ++i)
   {

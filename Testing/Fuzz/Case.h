@@ -46,12 +46,15 @@ struct Case
   std::string Filter; ///< the class without vtk
   Mesh Surface;
   /// The points of further surfaces of the same cells: key frames of a morph, the
-  /// reference of a comparison, the moved points of what is restored.
+  /// reference of a comparison, the moved points of what is restored, what is sewn on, a
+  /// detailed source and its base.
   std::vector<std::vector<Eigen::Vector3d>> Others;
   std::vector<Setting> Settings;
   std::vector<HandleMotion> Motions;
 
   bool IsDeformation() const;
+  /// Whether the output's points are others than the input's.
+  bool NumbersAnew() const;
   /// The first value of a setting, or `otherwise` if it is not set.
   double Get(const std::string& setting, double otherwise) const;
 };

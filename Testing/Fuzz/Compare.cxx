@@ -26,10 +26,11 @@ bool MayBeNaN(const std::string& name)
 /// Fields whose values depend on more than the surface, or whose sign is arbitrary.
 bool IsComparable(const Field& field, const Relation& relation)
 {
-  // Of bodies that enclose next to nothing, rounding decides which side is outside.
+  // Of bodies that enclose next to nothing, rounding decides which side is outside, and
+  // where a triangle has no area which edges are flipped on the way.
   if (field.Name.find("CurvatureDirection") != std::string::npos ||
     field.Name.find("StretchDirection") != std::string::npos ||
-    field.Name == "ReversedComponents" || field.IsArbitrary)
+    field.Name == "ReversedComponents" || field.Name == "FlippedEdges" || field.IsArbitrary)
   {
     return false;
   }
@@ -122,6 +123,7 @@ bool IsFiniteRow(const std::vector<Eigen::Vector3d>& points, Eigen::Index i)
 std::string DescribeNotFinite(const Case& of, const Outcome& outcome)
 {
   const bool isPrepare = of.Filter == "PrepareSurface";
+  const bool isOfInput = !of.NumbersAnew();
   for (const Field& field : outcome.Fields)
   {
     if (MayBeNaN(field.Name))
@@ -131,7 +133,7 @@ std::string DescribeNotFinite(const Case& of, const Outcome& outcome)
     for (Eigen::Index i = 0; i < field.Values.rows(); ++i)
     {
       bool isExpected = field.Values.row(i).allFinite();
-      if (field.Where == Field::OfPoints && !isPrepare && !isExpected)
+      if (field.Where == Field::OfPoints && isOfInput && !isExpected)
       {
         // What is not finite in a point that no triangle uses is passed on.
         isExpected = !IsFiniteRow(of.Surface.Points, i) ||
@@ -160,7 +162,7 @@ std::string DescribePartial(const Case& of, const Outcome& outcome)
       (!outcome.Table || outcome.Table->GetNumberOfRows() == 0);
     return isEmpty ? "" : "output after an error";
   }
-  if (of.Filter != "PrepareSurface")
+  if (!of.NumbersAnew())
   {
     const Mesh& mesh = of.Surface;
     // An empty surface is passed on.

@@ -27,4 +27,10 @@ struct Invariant
 };
 
 const std::vector<Invariant>& Invariants();
+
+/// Compares the results of a case and of a changed one. Where rounding of the input
+/// alone would do as much, the digits of the input do not determine the result: of a
+/// measure this is no finding, of others it is one of stability.
+std::optional<Finding> CheckChanged(const std::string& name, const Case& original,
+  const Outcome& first, const Case& changed, Relation relation);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Laws.h"
 
+#include "Copies.h"
 #include "Defects.h"
 #include "Messages.h"
 
@@ -332,6 +333,22 @@ std::optional<Finding> CheckRestored(const Case& original, const Outcome&, Rando
   return FindingOf("restored", changed, text);
 }
 
+/// The copies of a point that are joined go to the same place.
+std::optional<Finding> CheckJoined(const Case& original, const Outcome& first, Random&)
+{
+  const Ids copies = Copies(original.Surface);
+  std::string text;
+  for (const vtkIdType copy : copies)
+  {
+    if (first.Errors.empty() &&
+      first.Fields[0].Values.row(copy) != first.Fields[0].Values.row(copies[0]))
+    {
+      text = "Points: copies part at " + std::to_string(copy);
+    }
+  }
+  return FindingOf("joined", original, text);
+}
+
 bool Is(const Case& of, const char* filter)
 {
   return of.Filter == filter;
@@ -345,6 +362,7 @@ std::vector<Invariant> Laws()
     { "caps", LivesWithCaps, CheckCaps },
     { "keys", [](const Case& of) { return Is(of, "SurfaceMorph"); }, CheckKeys },
     { "roundtrip", IsOfOwnNumbers, CheckRoundTrip },
+    { "joined", [](const Case& of) { return !Copies(of.Surface).empty(); }, CheckJoined },
     { "prepared", MakesManifold, CheckPrepared },
     { "restored", [](const Case& of) { return Is(of, "RestoreSurface"); }, CheckRestored },
   };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh.h"
 
+#include "Copies.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -238,6 +240,10 @@ std::vector<vtkIdType> Components(const Mesh& mesh)
         }
       }
     }
+  }
+  for (const vtkIdType copy : Copies(mesh))
+  {
+    parent[static_cast<std::size_t>(root(copy))] = root(Copies(mesh)[0]);
   }
   for (std::size_t i = 0; i < parent.size(); ++i)
   {

@@ -87,6 +87,6 @@ void Permute(Mesh& mesh, const std::vector<vtkIdType>& order, Random& random);
 /// permutation, and a cell array CellId.
 vtkSmartPointer<vtkPolyData> ToPolyData(const Mesh& mesh);
 
-/// The component of each point over polygons and strips.
+/// The component of each point over polygons and strips, and over copies that are joined.
 std::vector<vtkIdType> Components(const Mesh& mesh);
 }

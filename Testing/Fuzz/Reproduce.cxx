@@ -135,6 +135,10 @@ void PrintInputs(std::ostream& out, const Case& of)
   {
     out << "    for port, surface in enumerate(surfaces):\n"
         << "        filter.SetInputData(port, surface)\n";
+    if (of.Surface.Find("Region"))
+    {
+      out << "    filter.SetRegionArrayName('Region')\n";
+    }
   }
 }
 

@@ -2,6 +2,8 @@
 #include "Settings.h"
 
 #include "vtkAsRigidAsPossibleDeformation.h"
+#include "vtkBoundaryLoops.h"
+#include "vtkCoatingTransfer.h"
 #include "vtkCurvatureError.h"
 #include "vtkDifferentialCoordinates.h"
 #include "vtkDifferentialReconstruction.h"
@@ -12,6 +14,7 @@
 #include "vtkLaplacianSpectrum.h"
 #include "vtkLeastSquaresMesh.h"
 #include "vtkMarkHandle.h"
+#include "vtkMeshMerge.h"
 #include "vtkMultiresolutionDeformation.h"
 #include "vtkPoissonDeformation.h"
 #include "vtkPrepareSurface.h"
@@ -272,6 +275,26 @@ Parameters QuantizationParameters()
     Make("VisualErrorAlpha", &Class::SetVisualErrorAlpha, Real(0.0, 1.0)) };
 }
 
+Parameters MergeParameters()
+{
+  using Class = vtkMeshMerge;
+  return { Make("Configuration", &Class::SetConfiguration, Integer(0, 1)),
+    Make("BendWidth", &Class::SetBendWidth, Length(1e-2, 2.0), Kind::Scalar, 1),
+    Make("SeamFairing", &Class::SetSeamFairing, Integer(0, 4)) };
+}
+
+Parameters CoatingParameters()
+{
+  using Class = vtkCoatingTransfer;
+  return { Make("Correspondence", &Class::SetCorrespondence, Integer(0, 3)),
+    Make("Alignment", &Class::SetAlignment, Integer(0, 2)),
+    Make("Smoothing", &Class::SetSmoothing, Real(0.0, 20.0)),
+    Make("Strength", &Class::SetStrength, Real(-2.0, 2.0)),
+    Make("ScaleDetails", &Class::SetScaleDetails, Flag()),
+    Make("FadeWidth", &Class::SetFadeWidth, Length(1e-2, 1.0), Kind::Scalar, 1),
+    Make("TransferArrays", &Class::SetTransferArrays, Flag()) };
+}
+
 /// Filters, each with what makes it and what can be set.
 struct Entry
 {
@@ -292,6 +315,8 @@ const std::map<std::string, Entry>& Entries()
   static const std::map<std::string, Entry> entries = {
     { "AsRigidAsPossibleDeformation",
       MakeEntry<vtkAsRigidAsPossibleDeformation>(RigidParameters()) },
+    { "BoundaryLoops", MakeEntry<vtkBoundaryLoops>({}) },
+    { "CoatingTransfer", MakeEntry<vtkCoatingTransfer>(CoatingParameters()) },
     { "CurvatureError",
       MakeEntry<vtkCurvatureError>(
         { Make("ComputeDirections", &vtkCurvatureError::SetComputeDirections, Flag()) }) },
@@ -311,6 +336,7 @@ const std::map<std::string, Entry>& Entries()
     { "LaplacianSpectrum", MakeEntry<vtkLaplacianSpectrum>(SpectrumParameters()) },
     { "LeastSquaresMesh", MakeEntry<vtkLeastSquaresMesh>(LeastSquaresParameters()) },
     { "MarkHandle", MakeEntry<vtkMarkHandle>(MarkParameters()) },
+    { "MeshMerge", MakeEntry<vtkMeshMerge>(MergeParameters()) },
     { "MultiresolutionDeformation",
       MakeEntry<vtkMultiresolutionDeformation>(With(DeformationParameters(),
         { Make("Smoothness", &vtkMultiresolutionDeformation::SetSmoothness, Integer(1, 3)) })) },
