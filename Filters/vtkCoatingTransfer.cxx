@@ -8,6 +8,7 @@
 #include "Bridge/SurfacePlaces.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Algebra/SimilarityFit.h"
+#include "Kernel/Merging/ClosestAlignment.h"
 #include "Kernel/Merging/SmoothStep.h"
 #include "Kernel/Mesh/GeodesicDistance.h"
 #include "Kernel/Mesh/Geometry.h"
@@ -256,7 +257,7 @@ vtkCoatingTransfer::Sides vtkCoatingTransfer::ReadSides(cartan::FilterRun& run) 
 
 void vtkCoatingTransfer::FindPlaces(Sides& sides, cartan::FilterRun& run) const
 {
-  const cartan::ExecutionContext context = run.Context().Part(0.5, 0.8);
+  const cartan::ExecutionContext context = run.Context().Part(0.6, 0.8);
   const cartan::TriangleMesh& mesh = *sides.Target->Mesh;
   if (this->Correspondence == POINT_ID)
   {
@@ -283,8 +284,8 @@ void vtkCoatingTransfer::FindPlaces(Sides& sides, cartan::FilterRun& run) const
   {
     const std::vector<int> used = cartan::UsedVertices(mesh);
     target = cartan::Moved(target,
-      cartan::AlignToSurface(
-        target(used, Eigen::all), *sides.Mesh, sides.Base, this->Alignment == SIMILARITY));
+      cartan::AlignToSurface(target(used, Eigen::all), *sides.Mesh, sides.Base,
+        this->Alignment == SIMILARITY, run.Context().Part(0.5, 0.6)));
   }
   sides.Found = cartan::ClosestPlaces(*sides.Mesh, sides.Base, target, context);
 }

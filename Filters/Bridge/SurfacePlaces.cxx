@@ -3,9 +3,6 @@
 
 #include "vtkCellArray.h"
 #include "vtkGenericCell.h"
-#include "vtkIterativeClosestPointTransform.h"
-#include "vtkLandmarkTransform.h"
-#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -21,14 +18,10 @@ namespace cartan
 {
 namespace
 {
-/// How many points take part in the alignment, and how often it is improved.
-constexpr int AlignedPoints = 1000;
-constexpr int AlignmentIterations = 100;
-
 /// How many places are found between two reports.
 constexpr int PlacesPerReport = 4096;
 
-vtkSmartPointer<vtkPolyData> MakeSurface(const Points& points, const Triangles* triangles)
+vtkSmartPointer<vtkPolyData> MakeSurface(const Points& points, const Triangles& triangles)
 {
   vtkNew<vtkPoints> coordinates;
   coordinates->SetDataTypeToDouble();
@@ -36,17 +29,14 @@ vtkSmartPointer<vtkPolyData> MakeSurface(const Points& points, const Triangles* 
   {
     coordinates->InsertNextPoint(points.row(v).data());
   }
+  vtkNew<vtkCellArray> cells;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+  {
+    cells->InsertNextCell({ triangles(t, 0), triangles(t, 1), triangles(t, 2) });
+  }
   auto surface = vtkSmartPointer<vtkPolyData>::New();
   surface->SetPoints(coordinates);
-  if (triangles)
-  {
-    vtkNew<vtkCellArray> cells;
-    for (Eigen::Index t = 0; t < triangles->rows(); ++t)
-    {
-      cells->InsertNextCell({ (*triangles)(t, 0), (*triangles)(t, 1), (*triangles)(t, 2) });
-    }
-    surface->SetPolys(cells);
-  }
+  surface->SetPolys(cells);
   return surface;
 }
 
@@ -71,7 +61,7 @@ FoundPlaces ClosestPlaces(const TriangleMesh& mesh, const Points& points, const 
   const ExecutionContext& context)
 {
   const Triangles& triangles = mesh.GetTriangles();
-  const auto surface = MakeSurface(points, &triangles);
+  const auto surface = MakeSurface(points, triangles);
   vtkNew<vtkStaticCellLocator> locator;
   locator->SetDataSet(surface);
   locator->BuildLocator();
@@ -99,27 +89,5 @@ FoundPlaces ClosestPlaces(const TriangleMesh& mesh, const Points& points, const 
     found.Distances[i] = std::sqrt(squaredDistance);
   }
   return found;
-}
-
-Eigen::Matrix4d AlignToSurface(
-  const Points& from, const TriangleMesh& mesh, const Points& points, bool isSimilarity)
-{
-  vtkNew<vtkIterativeClosestPointTransform> alignment;
-  alignment->SetSource(MakeSurface(from, nullptr));
-  alignment->SetTarget(MakeSurface(points, &mesh.GetTriangles()));
-  alignment->StartByMatchingCentroidsOn();
-  alignment->SetMaximumNumberOfLandmarks(AlignedPoints);
-  alignment->SetMaximumNumberOfIterations(AlignmentIterations);
-  if (isSimilarity)
-  {
-    alignment->GetLandmarkTransform()->SetModeToSimilarity();
-  }
-  else
-  {
-    alignment->GetLandmarkTransform()->SetModeToRigidBody();
-  }
-  alignment->Update();
-  return Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(
-    alignment->GetMatrix()->GetData());
 }
 }

@@ -13,10 +13,4 @@ struct FoundPlaces
 };
 FoundPlaces ClosestPlaces(const TriangleMesh& mesh, const Points& points, const Points& queries,
   const ExecutionContext& context);
-
-/// The rigid motion or similarity (4 x 4) that takes `from` closest to a surface, by
-/// vtkIterativeClosestPointTransform, which starts with both centers in one place and
-/// finds the nearest of several possible fits.
-Eigen::Matrix4d AlignToSurface(
-  const Points& from, const TriangleMesh& mesh, const Points& points, bool isSimilarity);
 }
