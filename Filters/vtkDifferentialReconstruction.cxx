@@ -15,6 +15,7 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <limits>
 
 vtkStandardNewMacro(vtkDifferentialReconstruction);
 
@@ -161,6 +162,14 @@ cartan::Points ReadCoordinates(vtkPolyData* input, const cartan::TriangleMesh& m
 
 namespace
 {
+/// What double precision may round off a coordinate where the surface is.
+double RoundingOf(const cartan::Surface& surface)
+{
+  const double largest =
+    surface.Origin.cwiseAbs().maxCoeff() + surface.Positions->cwiseAbs().maxCoeff();
+  return std::numeric_limits<double>::epsilon() * largest;
+}
+
 /// How far points may be from where the numbers put them, in parts of the size.
 constexpr double LargestUncertainty = 1e-5;
 
@@ -208,6 +217,7 @@ void vtkDifferentialReconstruction::Execute(cartan::FilterRun& run)
   settings.Weights = static_cast<cartan::LaplacianWeights>(this->LaplacianWeights);
   settings.Normalization = static_cast<cartan::DeltaNormalization>(this->Normalization);
   settings.Mode = static_cast<cartan::AnchorMode>(this->AnchorMode);
+  settings.Rounding = RoundingOf(*surface);
   const cartan::Points deltas = ReadCoordinates(input, *surface->Mesh,
     { this->DifferentialCoordinatesArrayName, this->OtherDifferentialCoordinatesArrayName,
       this->BlendWeightArrayName },

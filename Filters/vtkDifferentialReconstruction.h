@@ -32,7 +32,8 @@
  * of another size or not finite; other weights or normalization than the coordinates
  * were made with; a weight that is negative. A warning names points that rounding leaves
  * open by more than 1e-5 of the size, as caps of 1e-8 of their edge do with cotangent
- * weights.
+ * weights, also because coordinates of another surface hang on the last digits of a cap's
+ * corners.
  *
  * Reference: Sorkine, Differential Representations for Mesh Processing, Computer
  * Graphics Forum 25(4), 2006, section 2.2.

@@ -262,15 +262,46 @@ TEST_F(ReconstructionFilter, SaysWhereCapsLeaveNoDigits)
   EXPECT_LT(miss(flip->GetOutput()), 1e-9);
   vtktest::ExpectQuiet(*this->Log);
 
-  // Held where the cap is.
-  const vtkIdType last = surface->GetNumberOfPoints() - 1;
-  surface->GetPointData()->GetArray("Handle")->SetTuple1(last, 1.0);
-  for (const int corner : { 0, 1, 2 })
+  // Held where the cap is, with the neighbors of its corners.
+  const Eigen::RowVector3d center = torus.Positions.row(torus.NumberOfVertices() - 1);
+  for (int v = 0; v < torus.NumberOfVertices(); ++v)
   {
-    surface->GetPointData()->GetArray("Handle")->SetTuple1(torus.Faces(cap, corner), 1.0);
+    const bool isNear = (torus.Positions.row(v) - center).norm() < 0.8;
+    surface->GetPointData()->GetArray("Handle")->SetTuple1(v, isNear || v == 0 ? 1.0 : 0.0);
   }
   miss(surface);
   vtktest::ExpectQuiet(*this->Log);
+}
+
+// A cap's weights hang on the last digits of its corners. Coordinates of a surface where it
+// is none ask for what these weights cannot give.
+TEST_F(ReconstructionFilter, SaysWhereTheSurfacesLastDigitsDecide)
+{
+  for (const double height : { 2e-9, 0.2 })
+  {
+    shapes::Shape torus = shapes::Torus(20, 12);
+    const int cap = slivers::MiddleTriangle(torus);
+    slivers::SplitTriangle(torus, cap, { 0.5 - 0.5 * height, 0.5 - 0.5 * height, height });
+    auto surface = MakePolyData(torus);
+    vtktest::AddArray(
+      surface, "Handle", 1, [](vtkIdType v, double* value) { *value = v % 20 == 0 ? 1.0 : 0.0; });
+    const vtkSmartPointer<vtkPolyData> bent = vtktest::CopyOf(surface);
+    for (vtkIdType v = 0; v < bent->GetNumberOfPoints(); ++v)
+    {
+      const Eigen::Vector3d x(bent->GetPoint(v));
+      bent->GetPoints()->SetPoint(
+        v, x.x() + 0.3 * x.y() * x.y(), x.y() + 0.2 * x.z() * x.z(), x.z() + 0.3 * x.x() * x.x());
+    }
+    vtkNew<vtkDifferentialCoordinates> coordinates;
+    coordinates->SetInputData(bent);
+    coordinates->Update();
+    const vtkSmartPointer<vtkPolyData> input = vtktest::CopyOf(coordinates->GetOutput());
+    input->SetPoints(surface->GetPoints());
+    this->Log->Clear();
+    this->Result(input);
+    EXPECT_EQ(this->Log->Warnings.size(), height < 0.1 ? 1u : 0u) << height;
+    EXPECT_TRUE(this->Log->Errors.empty());
+  }
 }
 
 TEST_F(ReconstructionFilter, SaysWhatIsMissing)

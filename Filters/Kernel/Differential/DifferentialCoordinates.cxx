@@ -6,6 +6,7 @@
 #include "Mesh/Geometry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace cartan
@@ -53,6 +54,34 @@ Eigen::VectorXd MassesOfFit(const TriangleMesh& mesh, const Points& points,
   }
   // Mean value weights have a unit; their mean takes it away.
   return row.GetDivisors() / row.GetDivisors().mean();
+}
+
+/// Weights beyond this multiple of the median come from triangles so low that rounding of
+/// their corners changes them.
+constexpr double LargeWeight = 1e4;
+
+bool HasLargeWeights(const Eigen::VectorXd& weights)
+{
+  Eigen::VectorXd sizes = weights.cwiseAbs();
+  const Eigen::Index middle = sizes.size() / 2;
+  std::nth_element(sizes.data(), sizes.data() + middle, sizes.data() + sizes.size());
+  return sizes.size() > 0 && sizes.maxCoeff() > LargeWeight * sizes[middle];
+}
+
+/// Each coordinate up to `rounding` off, by golden-ratio steps: the same everywhere.
+Points WithOtherDigits(const Points& points, double rounding)
+{
+  constexpr double GoldenRatio = 0.6180339887498949;
+  Points other = points;
+  double* const coordinates = other.data();
+  double phase = 0.0;
+  for (Eigen::Index i = 0; i < other.size(); ++i)
+  {
+    phase += GoldenRatio;
+    phase -= std::floor(phase);
+    coordinates[i] += rounding * (2.0 * phase - 1.0);
+  }
+  return other;
 }
 }
 
@@ -117,6 +146,11 @@ DifferentialReconstruction::DifferentialReconstruction(std::shared_ptr<const Tri
   , System(settings.Backend)
 {
   RequireAnchors(*this->Mesh, this->AnchorVertices);
+  if (settings.Rounding > 0.0 && HasLargeWeights(this->Operator.GetWeights()))
+  {
+    this->OfOtherDigits.emplace(*this->Mesh, WithOtherDigits(*this->Rest, settings.Rounding),
+      settings.Weights, settings.Normalization, context);
+  }
   this->Masses =
     MassesOfFit(*this->Mesh, *this->Rest, settings, this->Operator, context.Part(0.1, 0.2));
   const bool isSoft = settings.Mode == AnchorMode::Soft;
@@ -142,6 +176,34 @@ Points DifferentialReconstruction::Residual(const Points& deltas, const Points& 
   const Points residual = deltas - this->Operator.Apply(*this->Mesh, positions);
   // The equations are M^-1 L x = d, the deltas N^-1 L x.
   return this->Operator.GetDivisors().cwiseQuotient(this->Masses).asDiagonal() * residual;
+}
+
+/// How much larger the deltas are than those of the given positions: coordinates that were
+/// made of these and scaled hang on the same digits.
+double DifferentialReconstruction::Exaggeration(const Points& deltas) const
+{
+  const Points own = this->Operator.Apply(*this->Mesh, *this->Rest);
+  std::vector<double> ratios;
+  for (Eigen::Index v = 0; v < own.rows(); ++v)
+  {
+    if (own.row(v).squaredNorm() > 0.0)
+    {
+      ratios.push_back(deltas.row(v).dot(own.row(v)) / own.row(v).squaredNorm());
+    }
+  }
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return ratios.empty() ? 1.0 : *middle;
+}
+
+Points DifferentialReconstruction::ChangeOfOtherDigits(
+  const Points& deltas, const Points& positions) const
+{
+  const Points difference = positions - this->Exaggeration(deltas) * *this->Rest;
+  Points change = Points::Zero(positions.rows(), 3);
+  const Points other = this->OfOtherDigits->Apply(*this->Mesh, difference);
+  this->System.Solve(this->Residual(other, difference), change);
+  return change;
 }
 
 Points DifferentialReconstruction::Reconstruct(const Points& deltas, const Points& anchorPositions,
@@ -174,6 +236,17 @@ Points DifferentialReconstruction::Reconstruct(const Points& deltas, const Point
     before = size;
     context.Report((step + 1.0) / MostSteps);
   }
+  if (uncertainty && this->OfOtherDigits)
+  {
+    const Points other = this->ChangeOfOtherDigits(deltas, positions);
+    for (Eigen::Index v = 0; v < other.rows(); ++v)
+    {
+      if (!(other.row(v).norm() <= uncertainty->row(v).norm()))
+      {
+        uncertainty->row(v) = other.row(v);
+      }
+    }
+  }
   return positions;
 }
 
@@ -181,6 +254,9 @@ std::size_t DifferentialReconstruction::GetBytes() const
 {
   return this->System.GetBytes() +
     TotalBytes(this->Masses, this->Operator.GetWeights(), this->Operator.GetDivisors(),
-      this->AnchorVertices);
+      this->AnchorVertices) +
+    (this->OfOtherDigits
+        ? TotalBytes(this->OfOtherDigits->GetWeights(), this->OfOtherDigits->GetDivisors())
+        : 0);
 }
 }

@@ -4,6 +4,8 @@
 #include "Algebra/AnchoredSystem.h"
 #include "Differential/Laplacian.h"
 
+#include <optional>
+
 namespace cartan
 {
 /// What the sum over the one-ring is divided by, the n_i of DifferentialOperator.
@@ -61,6 +63,8 @@ public:
     DeltaNormalization Normalization = DeltaNormalization::Area;
     AnchorMode Mode = AnchorMode::Hard;
     SolverBackend Backend = SolverBackend::Automatic;
+    /// How far the coordinates of `points` may be from what they stand for, a length.
+    double Rounding = 0.0;
   };
 
   /// `anchors` are vertices in increasing order, `anchorWeights` their omega > 0 (any with
@@ -71,8 +75,9 @@ public:
     const ExecutionContext& context = {});
 
   /// `deltas` is #V x 3, `anchorPositions` #anchors x 3. Vertices in no triangle keep
-  /// their points. `uncertainty` is set to the change that the last step of refinement
-  /// would still make, #V x 3: what rounding leaves open.
+  /// their points. `uncertainty` is set to what rounding leaves open, #V x 3: the change that
+  /// the last step of refinement would still make, or, where weights are so large that they
+  /// hang on the last digits of `points`, that weights of other last digits would make.
   Points Reconstruct(const Points& deltas, const Points& anchorPositions,
     const ExecutionContext& context = {}, Points* uncertainty = nullptr) const;
 
@@ -82,12 +87,15 @@ public:
 
 private:
   Points Residual(const Points& deltas, const Points& positions) const;
+  double Exaggeration(const Points& deltas) const;
+  Points ChangeOfOtherDigits(const Points& deltas, const Points& positions) const;
 
   std::shared_ptr<const TriangleMesh> Mesh;
   std::shared_ptr<const Points> Rest;
   std::vector<int> AnchorVertices;
   Eigen::VectorXd Masses; // of the fit
   DifferentialOperator Operator;
+  std::optional<DifferentialOperator> OfOtherDigits; // where there are large weights
   AnchoredSystem System;
 };
 }
