@@ -30,9 +30,12 @@ struct ReferenceCurvatures
   Eigen::VectorXd Mean;
   Eigen::VectorXd Gaussian;
   Eigen::VectorXd Areas;
-  std::string Warning;
+  std::vector<cartan::CurvatureState> States;
 
-  std::size_t GetBytes() const { return 3 * this->Areas.size() * sizeof(double); }
+  std::size_t GetBytes() const
+  {
+    return 3 * this->Areas.size() * sizeof(double) + this->States.size();
+  }
 };
 
 void AddCurvatures(vtkPolyData* output, const cartan::Curvatures& curvatures, bool withDirections)
@@ -70,8 +73,8 @@ cartan::IdSample PointsOf(
   return points;
 }
 
-/// Empty where every point's curvature is determined. `which` is the input or
-/// the reference.
+/// Empty where every point's curvature is determined. `which` is the input, the
+/// reference, or both.
 std::string DescribeUndetermined(
   const std::vector<cartan::CurvatureState>& states, const std::string& which)
 {
@@ -85,6 +88,16 @@ std::string DescribeUndetermined(
       "estimated from the normals of the triangles, with edges that join two rows taken as "
       "straight. For reliable values use at least three evenly spaced rows of points in every "
       "direction.";
+  }
+  const cartan::IdSample split = PointsOf(states, cartan::CurvatureState::Split);
+  if (!split.IsEmpty())
+  {
+    text += (text.empty() ? "" : " ") + std::string("The curvature of the ") + which +
+      " may be off by more than 5 % at " + split.Describe("point", "points") +
+      " of flat parts that meet in straight edges, as where larger triangles are split into "
+      "coplanar ones: more of them change nothing. Where the surface should be smooth, use it "
+      "before it is split, split it by vtkLoopSubdivisionFilter instead of "
+      "vtkLinearSubdivisionFilter, or give tubes more sides.";
   }
   const cartan::IdSample coarse = PointsOf(states, cartan::CurvatureState::Coarse);
   if (!coarse.IsEmpty())
@@ -139,15 +152,22 @@ void vtkCurvatureError::Compare(const cartan::SurfacePair& pair, cartan::FilterR
       auto kept = std::make_unique<ReferenceCurvatures>();
       kept->Mean = fitted.Mean;
       kept->Gaussian = fitted.Gaussian;
-      kept->Warning = DescribeUndetermined(fitted.States, "reference");
+      kept->States = fitted.States;
       kept->Areas =
         cartan::MixedVoronoiAreas(*pair.Mesh, *pair.Reference, run.Context().Part(0.45, 0.5));
       return kept;
     });
   const cartan::Curvatures now =
     cartan::FitCurvatures(*pair.Mesh, *pair.Current, run.Context().Part(0.5, 1.0));
-  run.Warn(before->Warning);
-  run.Warn(DescribeUndetermined(now.States, "input"));
+  if (now.States == before->States)
+  {
+    run.Warn(DescribeUndetermined(now.States, "input and of the reference"));
+  }
+  else
+  {
+    run.Warn(DescribeUndetermined(before->States, "reference"));
+    run.Warn(DescribeUndetermined(now.States, "input"));
+  }
 
   vtkPolyData* output = run.Output();
   AddCurvatures(output, now, this->ComputeDirections);

@@ -27,8 +27,10 @@
  *   vtkCylinderSource, and leave the curvature open. There it is estimated from
  *   the normals of the triangles, with edges between two rows taken as straight.
  *   0 also where the curvature may be off by more than 5 % of the larger principal
- *   one, because the triangles are large for how the surface bends there, or at
- *   sharp edges. Warnings give the number and the first ids. 1 elsewhere.
+ *   one, because the triangles are large for how the surface bends there, at
+ *   sharp edges, or because larger triangles were split into coplanar ones, as
+ *   vtkLinearSubdivisionFilter does. Warnings give the number and the first ids. 1
+ *   elsewhere.
  * - `MeanCurvatureError`, `GaussianCurvatureError` (with a reference): the
  *   surface's curvature minus the reference's.
  * The active point scalars, by which viewers color the surface, are

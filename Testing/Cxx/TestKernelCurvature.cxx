@@ -334,9 +334,8 @@ TEST(Curvature, HullsOfPointsAreRightOrCoarse)
       {
         const Exact exact = OnEllipsoid(onEllipsoid.row(v));
         const double spread = std::sqrt(exact.Mean * exact.Mean - exact.Gaussian);
-        // Single points of such irregular triangles are more than 5 % off.
-        EXPECT_NEAR(ofSmooth.Maximum[v], exact.Mean + spread, 0.2 * (exact.Mean + spread));
-        EXPECT_NEAR(ofSmooth.Minimum[v], exact.Mean - spread, 0.2 * (exact.Mean + spread));
+        EXPECT_NEAR(ofSmooth.Maximum[v], exact.Mean + spread, 0.05 * (exact.Mean + spread));
+        EXPECT_NEAR(ofSmooth.Minimum[v], exact.Mean - spread, 0.05 * (exact.Mean + spread));
       }
     }
   }

@@ -2,6 +2,7 @@
 #include "vtkCurvatureError.h"
 
 #include "AdviceWords.h"
+#include "TestShapes.h"
 #include "TestSurfaces.h"
 
 #include <gtest/gtest.h>
@@ -12,13 +13,17 @@
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkLineSource.h"
+#include "vtkLinearSubdivisionFilter.h"
+#include "vtkLoopSubdivisionFilter.h"
 #include "vtkNew.h"
 #include "vtkParametricEnneper.h"
 #include "vtkParametricFunctionSource.h"
 #include "vtkParametricTorus.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkPrepareSurface.h"
+#include "vtkSmartPointer.h"
 #include "vtkSphereSource.h"
 #include "vtkSuperquadricSource.h"
 #include "vtkTrivialProducer.h"
@@ -110,18 +115,47 @@ Exact OfTorus(double major, double minor, int axis)
   };
 }
 
-Result MeasureTorus(int around, int aroundTube)
+/// A vtkParametricTorus; as it comes, it has a seam.
+vtkSmartPointer<vtkPrepareSurface> ClosedTorus(int around, int aroundTube)
 {
   vtkNew<vtkParametricTorus> torus;
   vtkNew<vtkParametricFunctionSource> source;
   source->SetParametricFunction(torus);
   source->SetUResolution(around + 1);
   source->SetVResolution(aroundTube + 1);
-  // As it comes, it has a seam.
   vtkNew<vtkPrepareSurface> closed;
   closed->SetInputConnection(source->GetOutputPort());
   closed->SetTolerance(1e-6);
-  return Measure(closed, OfTorus(1.0, 0.5, 2), Everywhere);
+  return closed;
+}
+
+Result MeasureTorus(int around, int aroundTube)
+{
+  return Measure(ClosedTorus(around, aroundTube), OfTorus(1.0, 0.5, 2), Everywhere);
+}
+
+/// The source's surface, each point moved by up to `distance` in each coordinate and from
+/// there back onto the surface.
+vtkSmartPointer<vtkTrivialProducer> Jittered(vtkAlgorithm* source, double distance,
+  unsigned int seed, const std::function<surfaces::Point(const surfaces::Point&)>& ontoSurface)
+{
+  source->Update();
+  vtkNew<vtkPolyData> moved;
+  moved->DeepCopy(source->GetOutputDataObject(0));
+  shapes::Random random(seed);
+  for (vtkIdType i = 0; i < moved->GetNumberOfPoints(); ++i)
+  {
+    surfaces::Point point;
+    moved->GetPoint(i, point.data());
+    for (double& coordinate : point)
+    {
+      coordinate += distance * random();
+    }
+    moved->GetPoints()->SetPoint(i, ontoSurface(point).data());
+  }
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(moved);
+  return producer;
 }
 
 /// A straight one of radius .5 with rows + 1 rows.
@@ -271,18 +305,97 @@ TEST(CurvatureOfSources, CoarseToriAreRightOrFlagged)
   }
 }
 
+TEST(CurvatureOfSources, JitteredToriAndSpheresAreRightOrFlagged)
+{
+  const auto ontoTorus = [](const surfaces::Point& p)
+  {
+    // From the core circle of radius 1 out to .5.
+    const double distance = std::hypot(p[0], p[1]);
+    const double scale = 0.5 / std::hypot(distance - 1.0, p[2]);
+    const double stretch = (1.0 + scale * (distance - 1.0)) / distance;
+    return surfaces::Point{ stretch * p[0], stretch * p[1], scale * p[2] };
+  };
+  const auto ontoSphere = [](const surfaces::Point& p)
+  {
+    const double scale = 0.5 / std::hypot(p[0], p[1], p[2]);
+    return surfaces::Point{ scale * p[0], scale * p[1], scale * p[2] };
+  };
+  for (const int resolution : { 8, 12, 24, 50 })
+  {
+    for (const double jitter : { 0.1, 0.2 })
+    {
+      for (unsigned int seed = 1; seed <= 3; ++seed)
+      {
+        const double edge = surfaces::FullTurn * 0.5 / resolution;
+        const Result ofTorus =
+          Measure(Jittered(ClosedTorus(resolution, resolution), jitter * edge, seed, ontoTorus),
+            OfTorus(1.0, 0.5, 2), Everywhere);
+        EXPECT_LT(ofTorus.LargestTrusted, 0.05) << resolution << " " << jitter << " " << seed;
+        vtkNew<vtkSphereSource> sphere;
+        sphere->SetThetaResolution(resolution);
+        sphere->SetPhiResolution(resolution);
+        const Result ofSphere = Measure(
+          Jittered(sphere, jitter * edge, seed, ontoSphere),
+          [](const double*) {
+            return Principal{ 2.0, 2.0 };
+          },
+          Everywhere);
+        EXPECT_LT(ofSphere.LargestTrusted, 0.05) << resolution << " " << jitter << " " << seed;
+        EXPECT_TRUE(resolution < 50 || ofTorus.Undetermined < ofTorus.Chosen / 5)
+          << ofTorus.Undetermined;
+      }
+    }
+  }
+}
+
+TEST(CurvatureOfSources, SplitTrianglesAreNamedOnceAndSmoothOnesCured)
+{
+  const vtkSmartPointer<vtkPrepareSurface> torus = ClosedTorus(50, 50);
+  vtkNew<vtkLinearSubdivisionFilter> flat;
+  flat->SetInputConnection(torus->GetOutputPort());
+  const Result split = Measure(flat, OfTorus(1.0, 0.5, 2), Everywhere);
+  EXPECT_EQ(split.Undetermined, 10000);
+  EXPECT_NE(split.Warning.find("may be off by more than 5 % at 10000 points (ids 0, 1, 2, 3, 4, "
+                               "...) of flat parts"),
+    std::string::npos);
+  EXPECT_EQ(split.Warning.find("smaller triangles"), std::string::npos);
+  EXPECT_NE(split.Warning.find(shapes::Advice(
+              "Where the surface should be smooth, use it before it is split, split it by "
+              "vtkLoopSubdivisionFilter instead of vtkLinearSubdivisionFilter, or give tubes "
+              "more sides.")),
+    std::string::npos);
+
+  EXPECT_EQ(MeasureTorus(50, 50).Warning, "");
+  vtkNew<vtkLoopSubdivisionFilter> smooth;
+  smooth->SetInputConnection(torus->GetOutputPort());
+  EXPECT_EQ(Measure(smooth, OfTorus(1.0, 0.5, 2), Everywhere).Warning, "");
+  EXPECT_NE(MeasureTube(6, 8).Warning.find("of flat parts"), std::string::npos);
+  EXPECT_EQ(MeasureTube(12, 8).Warning, "");
+
+  // The same at both inputs is said once.
+  vtkNew<vtkCurvatureError> filter;
+  vtkNew<surfaces::Observer> messages;
+  surfaces::Observe(filter.GetPointer(), messages);
+  filter->SetInputConnection(flat->GetOutputPort());
+  filter->SetReferenceConnection(flat->GetOutputPort());
+  filter->Update();
+  EXPECT_NE(std::string(messages->GetWarningMessage())
+              .find("of the input and of the reference may be off by more than 5 % at 10000"),
+    std::string::npos);
+}
+
 TEST(CurvatureOfSources, TubesOfFewSidesAreRightOrFlagged)
 {
-  for (const int sides : { 3, 4, 6, 8, 10, 24 })
+  for (const int sides : { 3, 4, 6, 8, 10, 12, 24 })
   {
     for (const int rows : { 2, 4, 32 })
     {
       const Result result = MeasureTube(sides, rows);
       EXPECT_LT(result.LargestTrusted, 0.05) << sides << " " << rows;
       EXPECT_EQ(result.Undetermined == 0, result.Warning.empty());
-      // Edges of 90 degrees may as well be sharp, edges of 36 or less not.
+      // Edges of 90 degrees may as well be sharp, edges of 30 or less not.
       EXPECT_TRUE(sides > 4 || result.Undetermined == result.Chosen);
-      EXPECT_TRUE(sides < 10 || rows < 4 || result.Undetermined == 0) << sides << " " << rows;
+      EXPECT_TRUE(sides < 12 || rows < 4 || result.Undetermined == 0) << sides << " " << rows;
     }
   }
 }

@@ -2,6 +2,7 @@
 #include "Differential/Curvature.h"
 
 #include "Base/Constants.h"
+#include "Differential/FitTrust.h"
 #include "Differential/SurfaceFit.h"
 #include "Mesh/Geometry.h"
 
@@ -27,28 +28,6 @@ constexpr double TinyRidge = 1e-10;
 /// chord lengths of the time before: the normal converges by a factor of ten or
 /// more.
 constexpr int NormalCurvatureFits = 4;
-
-/// A neighborhood is flat, whatever its points leave open, if its normal turns
-/// by less than this from the vertex to the farthest point, in radians. Single
-/// precision coordinates leave 1e-6 in a flat polygon.
-constexpr double FlatTurn = 1e-4;
-
-/// The largest standard error of a form that is not coarse, relative to the larger
-/// curvature. What the residuals show is the noise and the part of higher
-/// derivatives that is no cubic's; another part is hidden. On smooth surfaces with
-/// known curvatures the error is 5 % where the standard error is 1 to 8 %.
-constexpr double LargestRelativeError = 0.015;
-
-/// The same at borders, where points on one side only hide more of it.
-constexpr double LargestRelativeErrorAtBorder = 0.01;
-
-/// The same of surfaces that bend so little in the neighborhood, in radians, that
-/// their curvature hardly differs from 0.
-constexpr double SmallTurn = 0.3;
-
-/// The sine of 33 degrees: half the largest turn along an edge. Edges of tubes with
-/// six sides turn by 60, of the icosahedron by 63, of a bar's cross section by 90.
-constexpr double LargestHalfTurnSine = 0.545;
 
 /// The mean of the normals of the triangles at v by their angles there, which
 /// does not depend on how polygons are triangulated. An angle near pi, of a
@@ -118,25 +97,15 @@ bool FitOpen(Neighborhood& neighborhood, int v, const Eigen::Vector3d& normal, S
   return radius * std::hypot(form.Uu, form.Uv, form.Vv) < FlatTurn;
 }
 
-/// Whether a determined form may be off by more than 5 % of the larger curvature.
-bool IsCoarse(const Neighborhood& neighborhood, const SecondForm& form, bool isAtBorder)
+/// Of a determined form at v.
+CurvatureState StateOf(const Neighborhood& neighborhood, const SecondForm& form,
+  const TriangleMesh& mesh, const Points& points, int v)
 {
-  double radius = 0.0;
-  double halfTurnSine = 0.0;
-  for (int i = 0; i < neighborhood.Size(); ++i)
+  if (!MayBeWrong(neighborhood, form, mesh.IsBoundary(v)))
   {
-    radius = std::max(radius, neighborhood.Offset(i).norm());
-    if (i < neighborhood.OneRingSize())
-    {
-      halfTurnSine = std::max(halfTurnSine, form.HalfTurnSine(neighborhood.Offset(i)));
-    }
+    return CurvatureState::Determined;
   }
-  const double curvature =
-    std::abs(0.5 * (form.Uu + form.Vv)) + std::hypot(0.5 * (form.Uu - form.Vv), form.Uv);
-  const double largest = isAtBorder ? LargestRelativeErrorAtBorder : LargestRelativeError;
-  return radius * curvature >= FlatTurn &&
-    (form.StandardError * radius > largest * std::max(radius * curvature, SmallTurn) ||
-      halfTurnSine > LargestHalfTurnSine);
+  return IsSplitFlat(mesh, points, v) ? CurvatureState::Split : CurvatureState::Coarse;
 }
 
 void Store(const SecondForm& form, int v, Curvatures& curvatures)
@@ -189,9 +158,7 @@ Curvatures FitCurvatures(
       }
       else if (FitDetermined(neighborhood, v, normal, form))
       {
-        curvatures.States[v] = IsCoarse(neighborhood, form, mesh.IsBoundary(v))
-          ? CurvatureState::Coarse
-          : CurvatureState::Determined;
+        curvatures.States[v] = StateOf(neighborhood, form, mesh, points, v);
       }
       else
       {

@@ -13,6 +13,9 @@ namespace
 /// every neighborhood next to it into that one fan.
 constexpr int MaximumFan = 32;
 
+/// Of more neighbors than this the nearest one is not looked for, at each point around.
+constexpr int MaximumSearch = 4096;
+
 /// Cosines of the turn of the normal beyond which a point is left out. In the
 /// second ring 78 degrees: what is next to a right-angled edge must not see its
 /// other side. Farther out 61, since it may be the other side of a tube; a bit
@@ -68,7 +71,7 @@ void Neighborhood::AddFan(int v, double minimumCosine, double maximumSquaredDist
 {
   const int valence = this->Mesh.Valence(v);
   const int step = (valence + MaximumFan - 1) / MaximumFan;
-  const int first = step > 1 ? this->NearestInFan(v) : 0;
+  const int first = step > 1 && valence <= MaximumSearch ? this->NearestInFan(v) : 0;
   for (int i = 0; i < valence; i += step)
   {
     const int w = this->Mesh.Neighbor(this->Mesh.RingBegin(v) + (first + i) % valence);

@@ -56,6 +56,9 @@ struct PlaneAxes
   /// surface. False where they are no numbers.
   bool ToSecondForm(const Vector9& fit, SecondForm& form) const;
 
+  /// The Frobenius norm of the third derivatives, in which mixed ones occur three times.
+  double Change(const Vector9& fit) const;
+
   /// The standard error of the form, by the covariance s^2 P M P of the
   /// coefficients P b of a fit to heights, where P = W^T W is the inverse of the
   /// matrix M + R with its ridge, and s^2 the sum of squared residuals over the number of
@@ -114,6 +117,15 @@ bool PlaneAxes::ToSecondForm(const Vector9& fit, SecondForm& form) const
   form.Uv = -(hessianAb - shear * hessianAa) / (size * std::sqrt(e * width));
   form.Vv = -(hessianBb - 2.0 * shear * hessianAb + shear * shear * hessianAa) / (size * width);
   return std::isfinite(form.Uu * form.Vv) && std::isfinite(form.Uv * form.Uv);
+}
+
+double PlaneAxes::Change(const Vector9& fit) const
+{
+  const double a = this->UnitA;
+  const double b = this->UnitB;
+  const Eigen::Array4d derivatives(
+    fit[5] / (a * a * a), fit[6] / (a * a * b), fit[7] / (a * b * b), fit[8] / (b * b * b));
+  return std::sqrt((derivatives.square() * Eigen::Array4d(1.0, 3.0, 3.0, 1.0)).sum());
 }
 
 double PlaneAxes::StandardError(
@@ -295,6 +307,7 @@ bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
       squaredHeights - fit.dot(rightHandSide) - fit.cwiseAbs2().dot(ridge);
     form.StandardError = axes.StandardError(
       factor.matrixL().solve(Matrix9::Identity()), ridge, squaredResiduals, neighborhood.Size());
+    form.Change = axes.Change(fit);
   }
   return axes.ToSecondForm(fit, form);
 }

@@ -23,6 +23,10 @@ struct SecondForm
   /// the fit. Infinite where there are too few points to tell.
   double StandardError = std::numeric_limits<double>::infinity();
 
+  /// The Frobenius norm of the third derivatives of a cubic's height: by how much the
+  /// form changes per length, in 1 / length^2.
+  double Change = 0.0;
+
   /// What to add to the tangential part of an offset from the vertex so that a
   /// circle of curvature gets the length of its chord: along the direction in
   /// which the normal turns on the way, a length tangential part t and a height
@@ -83,6 +87,9 @@ public:
   int Vertex(int i) const { return this->Ids[i + 1]; }
   const Eigen::Vector3d& Offset(int i) const { return this->Offsets[i + 1]; }
 
+  /// The normal at the i-th point, with normals only.
+  Eigen::Vector3d Normal(int i) const { return this->Normals->row(this->Vertex(i)).transpose(); }
+
   /// Whether the i-th point is a neighbor or its normal has turned by less than
   /// 37 degrees.
   bool IsClose(int i) const;
@@ -121,7 +128,7 @@ constexpr double LeastDetermination = 0.025;
 /// The least-squares cubic of FitCurvatures() in the plane normal to `normal`.
 /// The coordinates are corrected to chord lengths by `earlier` where it is
 /// given, and as on a sphere where it is not. False if the points coincide. With
-/// `earlier`, the form has a standard error.
+/// `earlier`, the form has a standard error and a change.
 bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   const SecondForm* earlier, SecondForm& form);
 
