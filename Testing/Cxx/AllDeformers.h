@@ -21,16 +21,13 @@ using MakeDeformer = std::function<std::unique_ptr<cartan::SurfaceDeformer>(
   const cartan::HandleProblem&, const cartan::ExecutionContext&)>;
 
 template <typename Deformer, typename... Options>
-MakeDeformer Maker(Options... options)
+MakeDeformer Maker(cartan::SolverBackend backend, Options... options)
 {
   return [=](const cartan::HandleProblem& problem, const cartan::ExecutionContext& context)
-  {
-    return std::make_unique<Deformer>(
-      problem, options..., cartan::SolverBackend::Automatic, context);
-  };
+  { return std::make_unique<Deformer>(problem, options..., backend, context); };
 }
 
-inline MakeDeformer SimilarityMaker(
+inline MakeDeformer SimilarityMaker(cartan::SolverBackend backend,
   cartan::SimilarityReconstruction reconstruction, bool constrainTransforms, int refits)
 {
   return [=](const cartan::HandleProblem& problem, const cartan::ExecutionContext& context)
@@ -38,7 +35,7 @@ inline MakeDeformer SimilarityMaker(
     cartan::SimilarityDeformer::Options options;
     options.ConstrainTransforms = constrainTransforms;
     auto deformer = std::make_unique<cartan::SimilarityDeformer>(
-      problem, options, cartan::SolverBackend::Automatic, context.Part(0.0, 0.5));
+      problem, options, backend, context.Part(0.0, 0.5));
     deformer->SetReconstruction(reconstruction);
     deformer->SetRefits(refits);
     deformer->Prepare(context.Part(0.5, 1.0));
@@ -47,32 +44,36 @@ inline MakeDeformer SimilarityMaker(
 }
 
 /// By name.
-inline std::map<std::string, MakeDeformer> All()
+inline std::map<std::string, MakeDeformer> All(
+  cartan::SolverBackend backend = cartan::SolverBackend::Automatic)
 {
   using namespace cartan;
   std::map<std::string, MakeDeformer> makers;
-  makers["RotationInvariant"] = Maker<RotationInvariantDeformer>();
-  makers["ShapePreserving"] = Maker<ShapePreservingDeformer>();
-  makers["PoissonHarmonic"] = Maker<PoissonDeformer>(Propagation::Harmonic);
-  makers["PoissonGeodesic"] = Maker<PoissonDeformer>(Propagation::Geodesic);
-  makers["LaplacianNone"] = Maker<LaplacianDeformer>(LaplacianRotations::None);
-  makers["LaplacianEstimated"] = Maker<LaplacianDeformer>(LaplacianRotations::Estimated);
-  makers["LaplacianImplicit"] = Maker<LaplacianDeformer>(LaplacianRotations::Implicit);
+  makers["RotationInvariant"] = Maker<RotationInvariantDeformer>(backend);
+  makers["ShapePreserving"] = Maker<ShapePreservingDeformer>(backend);
+  makers["PoissonHarmonic"] = Maker<PoissonDeformer>(backend, Propagation::Harmonic);
+  makers["PoissonGeodesic"] = Maker<PoissonDeformer>(backend, Propagation::Geodesic);
+  makers["LaplacianNone"] = Maker<LaplacianDeformer>(backend, LaplacianRotations::None);
+  makers["LaplacianEstimated"] = Maker<LaplacianDeformer>(backend, LaplacianRotations::Estimated);
+  makers["LaplacianImplicit"] = Maker<LaplacianDeformer>(backend, LaplacianRotations::Implicit);
   for (int order = 1; order <= 3; ++order)
   {
-    makers["Multiresolution" + std::to_string(order)] = Maker<MultiresolutionDeformer>(order);
+    makers["Multiresolution" + std::to_string(order)] =
+      Maker<MultiresolutionDeformer>(backend, order);
   }
-  makers["Spokes"] =
-    Maker<AsRigidAsPossibleDeformer>(RigidityEnergy::Spokes, InitialGuess::ShapePreserving);
+  makers["Spokes"] = Maker<AsRigidAsPossibleDeformer>(
+    backend, RigidityEnergy::Spokes, InitialGuess::ShapePreserving);
   makers["SpokesAndRims"] = Maker<AsRigidAsPossibleDeformer>(
-    RigidityEnergy::SpokesAndRims, InitialGuess::RotationInvariant);
-  makers["SmoothedRotations"] =
-    Maker<AsRigidAsPossibleDeformer>(RigidityEnergy::SmoothedRotations, InitialGuess::RestShape);
-  makers["SimilarityEdgeForm"] = SimilarityMaker(SimilarityReconstruction::EdgeForm, true, 3);
+    backend, RigidityEnergy::SpokesAndRims, InitialGuess::RotationInvariant);
+  makers["SmoothedRotations"] = Maker<AsRigidAsPossibleDeformer>(
+    backend, RigidityEnergy::SmoothedRotations, InitialGuess::RestShape);
+  makers["SimilarityEdgeForm"] =
+    SimilarityMaker(backend, SimilarityReconstruction::EdgeForm, true, 3);
   makers["SimilarityLeastSquares"] =
-    SimilarityMaker(SimilarityReconstruction::LeastSquares, true, 2);
-  makers["SimilarityAffine"] = SimilarityMaker(SimilarityReconstruction::Affine, true, 0);
-  makers["SimilarityOfPositions"] = SimilarityMaker(SimilarityReconstruction::EdgeForm, false, 0);
+    SimilarityMaker(backend, SimilarityReconstruction::LeastSquares, true, 2);
+  makers["SimilarityAffine"] = SimilarityMaker(backend, SimilarityReconstruction::Affine, true, 0);
+  makers["SimilarityOfPositions"] =
+    SimilarityMaker(backend, SimilarityReconstruction::EdgeForm, false, 0);
   return makers;
 }
 }

@@ -15,7 +15,7 @@
 #include "vtkSimilarityDeformation.h"
 #include "vtkVolumetricDeformation.h"
 
-#include "Kernel/Algebra/CholeskyFactor.h"
+#include "Kernel/Algebra/SymmetricSolver.h"
 
 namespace history
 {

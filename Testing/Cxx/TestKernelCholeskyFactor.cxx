@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Algebra/CholeskyFactor.h"
 #include "Kernel/Algebra/ConstrainedSolver.h"
 #include "Kernel/Algebra/SparseProduct.h"
+#include "Kernel/Algebra/SymmetricSolver.h"
 
 #include <gtest/gtest.h>
 
@@ -12,13 +12,13 @@
 
 namespace
 {
-using cartan::CholeskyFactor;
 using cartan::Error;
 using cartan::ErrorCode;
 using cartan::FactorLimits;
-using cartan::FactorStatus;
 using cartan::SolverBackend;
+using cartan::SolverStatus;
 using cartan::SparseMatrix;
+using cartan::SymmetricSolver;
 
 /// The Laplacian of a grid of count x count nodes, `shift` added to its diagonal,
 /// whole or its lower triangle.
@@ -76,20 +76,20 @@ TEST(CholeskyFactor, SolvesWithNarrowAndWideIndicesForAnyNumberOfColumns)
     {
       FactorLimits limits;
       limits.NarrowEntries = isWide ? 10 : limits.NarrowEntries;
-      const auto factor = cartan::MakeCholeskyFactor(backend, limits);
-      ASSERT_EQ(factor->Analyze(lower), FactorStatus::Ok);
-      ASSERT_EQ(factor->Factorize(lower), FactorStatus::Ok);
+      const auto factor = cartan::MakeSymmetricSolver(backend, limits);
+      ASSERT_EQ(factor->Analyze(lower), SolverStatus::Ok);
+      ASSERT_EQ(factor->Factorize(lower), SolverStatus::Ok);
       EXPECT_GE(factor->GetNumberOfEntries(), lower.nonZeros());
       EXPECT_GE(factor->GetBytes(), 12 * static_cast<std::size_t>(factor->GetNumberOfEntries()));
       for (int columns = 1; columns <= 9; ++columns)
       {
         const Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Random(lower.rows(), columns);
-        ASSERT_EQ(factor->Solve(rightHandSide), FactorStatus::Ok);
+        ASSERT_EQ(factor->Solve(rightHandSide), SolverStatus::Ok);
         EXPECT_LT((dense * factor->GetSolution() - rightHandSide).cwiseAbs().maxCoeff(), 1e-12);
       }
       // Some columns of a larger matrix, whose columns lie farther apart.
       const Eigen::MatrixXd larger = Eigen::MatrixXd::Random(lower.rows() + 3, 4);
-      ASSERT_EQ(factor->Solve(larger.topRows(lower.rows())), FactorStatus::Ok);
+      ASSERT_EQ(factor->Solve(larger.topRows(lower.rows())), SolverStatus::Ok);
       EXPECT_LT((dense * factor->GetSolution() - larger.topRows(lower.rows())).norm(), 1e-12);
     }
   }
@@ -102,14 +102,14 @@ TEST(CholeskyFactor, WideFactorsTakeMoreMemoryForTheSameSolution)
   for (const SolverBackend backend : Backends())
   {
     FactorLimits limits;
-    const auto narrow = cartan::MakeCholeskyFactor(backend, limits);
+    const auto narrow = cartan::MakeSymmetricSolver(backend, limits);
     limits.NarrowEntries = 1;
-    const auto wide = cartan::MakeCholeskyFactor(backend, limits);
-    for (CholeskyFactor* factor : { narrow.get(), wide.get() })
+    const auto wide = cartan::MakeSymmetricSolver(backend, limits);
+    for (SymmetricSolver* factor : { narrow.get(), wide.get() })
     {
-      ASSERT_EQ(factor->Analyze(lower), FactorStatus::Ok);
-      ASSERT_EQ(factor->Factorize(lower), FactorStatus::Ok);
-      ASSERT_EQ(factor->Solve(rightHandSide), FactorStatus::Ok);
+      ASSERT_EQ(factor->Analyze(lower), SolverStatus::Ok);
+      ASSERT_EQ(factor->Factorize(lower), SolverStatus::Ok);
+      ASSERT_EQ(factor->Solve(rightHandSide), SolverStatus::Ok);
     }
     EXPECT_GT(wide->GetBytes(), narrow->GetBytes());
     EXPECT_EQ(wide->GetNumberOfEntries(), narrow->GetNumberOfEntries());
@@ -122,40 +122,40 @@ TEST(CholeskyFactor, TellsWhatWentWrong)
   for (const SolverBackend backend : Backends())
   {
     const SparseMatrix indefinite = Grid(12, -0.5);
-    const auto factor = cartan::MakeCholeskyFactor(backend);
-    ASSERT_EQ(factor->Analyze(indefinite), FactorStatus::Ok);
-    EXPECT_EQ(factor->Factorize(indefinite), FactorStatus::NotPositiveDefinite);
+    const auto factor = cartan::MakeSymmetricSolver(backend);
+    ASSERT_EQ(factor->Analyze(indefinite), SolverStatus::Ok);
+    EXPECT_EQ(factor->Factorize(indefinite), SolverStatus::NotPositiveDefinite);
     // And goes on with a better one of the same pattern.
-    EXPECT_EQ(factor->Factorize(Grid(12, 0.5)), FactorStatus::Ok);
+    EXPECT_EQ(factor->Factorize(Grid(12, 0.5)), SolverStatus::Ok);
 
     for (const bool isWide : { false, true })
     {
       FactorLimits limits;
       limits.NarrowEntries = isWide ? 10 : limits.NarrowEntries;
       limits.Entries = 200;
-      const auto limited = cartan::MakeCholeskyFactor(backend, limits);
-      EXPECT_EQ(limited->Analyze(Grid(12, 0.5)), FactorStatus::OutOfMemory);
-      EXPECT_EQ(limited->Analyze(Grid(4, 0.5)), FactorStatus::Ok);
-      EXPECT_EQ(limited->Factorize(Grid(4, 0.5)), FactorStatus::Ok);
+      const auto limited = cartan::MakeSymmetricSolver(backend, limits);
+      EXPECT_EQ(limited->Analyze(Grid(12, 0.5)), SolverStatus::OutOfMemory);
+      EXPECT_EQ(limited->Analyze(Grid(4, 0.5)), SolverStatus::Ok);
+      EXPECT_EQ(limited->Factorize(Grid(4, 0.5)), SolverStatus::Ok);
     }
   }
 }
 
 TEST(CholeskyFactor, EachStatusHasAMessageOfItsOwn)
 {
-  EXPECT_NO_THROW(cartan::RequireFactor(FactorStatus::Ok, 7));
+  EXPECT_NO_THROW(cartan::RequireSolver(SolverStatus::Ok, 7));
   std::set<std::string> messages;
-  const std::vector<std::pair<FactorStatus, ErrorCode>> codes = {
-    { FactorStatus::NotPositiveDefinite, ErrorCode::NotPositiveDefinite },
-    { FactorStatus::TooLarge, ErrorCode::TooLarge },
-    { FactorStatus::OutOfMemory, ErrorCode::OutOfMemory },
-    { FactorStatus::Failed, ErrorCode::SolverFailed }
+  const std::vector<std::pair<SolverStatus, ErrorCode>> codes = {
+    { SolverStatus::NotPositiveDefinite, ErrorCode::NotPositiveDefinite },
+    { SolverStatus::TooLarge, ErrorCode::TooLarge },
+    { SolverStatus::OutOfMemory, ErrorCode::OutOfMemory },
+    { SolverStatus::Failed, ErrorCode::SolverFailed }
   };
   for (const auto& [status, code] : codes)
   {
     try
     {
-      cartan::RequireFactor(status, 77);
+      cartan::RequireSolver(status, 77);
       FAIL() << "accepted";
     }
     catch (const Error& error)

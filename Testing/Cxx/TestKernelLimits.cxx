@@ -4,9 +4,9 @@
 #include "AllDeformers.h"
 #include "RealMeshes.h"
 
-#include "Kernel/Algebra/CholeskyFactor.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Algebra/SparseProduct.h"
+#include "Kernel/Algebra/SymmetricSolver.h"
 #include "Kernel/Differential/FrameReconstruction.h"
 #include "Kernel/Differential/Laplacian.h"
 
@@ -23,9 +23,9 @@ namespace
 {
 using cartan::Error;
 using cartan::ErrorCode;
-using cartan::FactorStatus;
 using cartan::HandleProblem;
 using cartan::LowerEntryLimit;
+using cartan::SolverStatus;
 using cartan::SparseMatrix;
 using cartan::TriangleMesh;
 
@@ -147,9 +147,9 @@ TEST(EigenFactor, CountsTheEntriesBeforeItFindsThePattern)
     cartan::Laplacian(mesh, Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges()));
   matrix.diagonal().array() += 0.1;
   const SparseMatrix lower = matrix.triangularView<Eigen::Lower>();
-  const auto narrow = cartan::MakeCholeskyFactor(cartan::SolverBackend::Eigen);
-  ASSERT_EQ(narrow->Analyze(lower), FactorStatus::Ok);
-  ASSERT_EQ(narrow->Factorize(lower), FactorStatus::Ok);
+  const auto narrow = cartan::MakeSymmetricSolver(cartan::SolverBackend::Eigen);
+  ASSERT_EQ(narrow->Analyze(lower), SolverStatus::Ok);
+  ASSERT_EQ(narrow->Factorize(lower), SolverStatus::Ok);
   const std::int64_t entries = narrow->GetNumberOfEntries();
   // L itself, with the space of its values and its indices.
   EXPECT_GE(narrow->GetBytes(), 12 * static_cast<std::size_t>(entries));
@@ -159,19 +159,19 @@ TEST(EigenFactor, CountsTheEntriesBeforeItFindsThePattern)
   ASSERT_GT(entries - 1, 2 * lower.nonZeros() / 5 * 6 + 2 * lower.cols());
   cartan::FactorLimits limits;
   limits.NarrowEntries = entries - 1;
-  const auto wide = cartan::MakeCholeskyFactor(cartan::SolverBackend::Eigen, limits);
-  ASSERT_EQ(wide->Analyze(lower), FactorStatus::Ok);
-  ASSERT_EQ(wide->Factorize(lower), FactorStatus::Ok);
+  const auto wide = cartan::MakeSymmetricSolver(cartan::SolverBackend::Eigen, limits);
+  ASSERT_EQ(wide->Analyze(lower), SolverStatus::Ok);
+  ASSERT_EQ(wide->Factorize(lower), SolverStatus::Ok);
   EXPECT_EQ(wide->GetNumberOfEntries(), entries);
   EXPECT_GE(wide->GetBytes(), 16 * static_cast<std::size_t>(entries));
   const Eigen::MatrixXd right = Eigen::MatrixXd::Random(lower.rows(), 3);
-  ASSERT_EQ(wide->Solve(right), FactorStatus::Ok);
+  ASSERT_EQ(wide->Solve(right), SolverStatus::Ok);
   EXPECT_LT((matrix * wide->GetSolution() - right).norm(), 1e-11);
 
   // What cannot be counted in any index, or not kept, is not begun.
   limits.Entries = entries - 1;
-  EXPECT_EQ(cartan::MakeCholeskyFactor(cartan::SolverBackend::Eigen, limits)->Analyze(lower),
-    FactorStatus::OutOfMemory);
+  EXPECT_EQ(cartan::MakeSymmetricSolver(cartan::SolverBackend::Eigen, limits)->Analyze(lower),
+    SolverStatus::OutOfMemory);
 }
 
 TEST(SolveFramesFrom, SaysThatItDidNotConverge)
@@ -257,31 +257,31 @@ TEST(CholmodFactor, SaysWhenTheMemoryDoesNotSuffice)
   int failuresOfFactorize = 0;
   for (int count = 0; failuresOfAnalyze == count; ++count)
   {
-    const auto factor = cartan::MakeCholeskyFactor(cartan::SolverBackend::Cholmod);
-    FactorStatus status = FactorStatus::Ok;
+    const auto factor = cartan::MakeSymmetricSolver(cartan::SolverBackend::Cholmod);
+    SolverStatus status = SolverStatus::Ok;
     {
       const LimitedAllocations limited(count);
       status = factor->Analyze(lower);
     }
-    ASSERT_TRUE(status == FactorStatus::Ok || status == FactorStatus::OutOfMemory) << count;
-    failuresOfAnalyze += status == FactorStatus::OutOfMemory ? 1 : 0;
-    ASSERT_EQ(factor->Analyze(lower), FactorStatus::Ok) << count; // works again
+    ASSERT_TRUE(status == SolverStatus::Ok || status == SolverStatus::OutOfMemory) << count;
+    failuresOfAnalyze += status == SolverStatus::OutOfMemory ? 1 : 0;
+    ASSERT_EQ(factor->Analyze(lower), SolverStatus::Ok) << count; // works again
   }
   EXPECT_GT(failuresOfAnalyze, 3);
   for (int count = 0; failuresOfFactorize == count; ++count)
   {
-    const auto factor = cartan::MakeCholeskyFactor(cartan::SolverBackend::Cholmod);
-    ASSERT_EQ(factor->Analyze(lower), FactorStatus::Ok);
-    FactorStatus status = FactorStatus::Ok;
+    const auto factor = cartan::MakeSymmetricSolver(cartan::SolverBackend::Cholmod);
+    ASSERT_EQ(factor->Analyze(lower), SolverStatus::Ok);
+    SolverStatus status = SolverStatus::Ok;
     {
       const LimitedAllocations limited(count);
       status = factor->Factorize(lower);
     }
-    ASSERT_TRUE(status == FactorStatus::Ok || status == FactorStatus::OutOfMemory) << count;
-    failuresOfFactorize += status == FactorStatus::OutOfMemory ? 1 : 0;
-    ASSERT_EQ(factor->Factorize(lower), FactorStatus::Ok) << count;
+    ASSERT_TRUE(status == SolverStatus::Ok || status == SolverStatus::OutOfMemory) << count;
+    failuresOfFactorize += status == SolverStatus::OutOfMemory ? 1 : 0;
+    ASSERT_EQ(factor->Factorize(lower), SolverStatus::Ok) << count;
     const Eigen::MatrixXd right = Eigen::MatrixXd::Random(lower.rows(), 2);
-    ASSERT_EQ(factor->Solve(right), FactorStatus::Ok);
+    ASSERT_EQ(factor->Solve(right), SolverStatus::Ok);
     EXPECT_LT((matrix * factor->GetSolution() - right).norm(), 1e-12);
   }
   EXPECT_GT(failuresOfFactorize, 3);

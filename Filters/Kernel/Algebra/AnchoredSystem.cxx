@@ -78,12 +78,12 @@ void AnchoredSystem::FactorizeFit(const SparseMatrix& laplacian, const Eigen::Ve
   this->RightHandSide = transposed * counts.asDiagonal();
 }
 
-void AnchoredSystem::Solve(
-  const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const
+void AnchoredSystem::Solve(const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values,
+  const ExecutionContext& context) const
 {
   if (this->Stiffness.size() == 0 && this->RightHandSide.size() == 0)
   {
-    this->Solver.Solve(rightHandSide, values);
+    this->Solver.Solve(rightHandSide, values, context);
     return;
   }
   Field complete = rightHandSide;
@@ -96,7 +96,7 @@ void AnchoredSystem::Solve(
     const auto pull = this->Stiffness.asDiagonal() * values;
     complete = complete.size() ? Field(complete + pull) : Field(pull);
   }
-  this->Solver.Solve(complete, values);
+  this->Solver.Solve(complete, values, context);
 }
 
 std::size_t AnchoredSystem::GetBytes() const

@@ -37,8 +37,9 @@ enum class AnchorMode
 class AnchoredSystem
 {
 public:
-  explicit AnchoredSystem(SolverBackend backend = SolverBackend::Automatic)
-    : Solver(backend)
+  explicit AnchoredSystem(
+    SolverBackend backend = SolverBackend::Automatic, const FactorLimits& limits = {})
+    : Solver(backend, limits)
   {
   }
 
@@ -60,22 +61,28 @@ public:
 
   /// `rightHandSide` is b (#U x k), the d of FactorizeFit; `values` (#U x k) has the
   /// t of hard and soft anchors and gets x.
-  void Solve(const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const;
+  void Solve(const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values,
+    const ExecutionContext& context = {}) const;
 
   /// The same with b = 0: free unknowns get the values between the anchors'.
-  void Interpolate(Eigen::Ref<Field> values) const { this->Solve(Field(), values); }
+  void Interpolate(Eigen::Ref<Field> values, const ExecutionContext& context = {}) const
+  {
+    this->Solve(Field(), values, context);
+  }
 
   /// The free unknowns' x for a right-hand side to which all anchors' shares are
   /// added already: #free x k each. Valid until the next solve.
   Eigen::Map<const Eigen::MatrixXd> SolveFree(
-    const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const
+    const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
+    const ExecutionContext& context = {}) const
   {
-    return this->Solver.SolveFree(rightHandSide);
+    return this->Solver.SolveFree(rightHandSide, context);
   }
 
   /// In increasing order.
   const std::vector<int>& GetFree() const { return this->Solver.GetFree(); }
   int GetNumberOfFactorizations() const { return this->Solver.GetNumberOfFactorizations(); }
+  SolverBackend GetBackend() const { return this->Solver.GetBackend(); }
   std::size_t GetBytes() const;
 
 private:

@@ -112,7 +112,7 @@ private:
 };
 
 template <typename Api>
-class Factorization : public CholeskyFactor
+class Factorization : public SymmetricSolver
 {
 public:
   explicit Factorization(const FactorLimits& limits)
@@ -144,7 +144,7 @@ public:
   Factorization(const Factorization&) = delete;
   Factorization& operator=(const Factorization&) = delete;
 
-  FactorStatus Analyze(const SparseMatrix& lower) override
+  SolverStatus Analyze(const SparseMatrix& lower) override
   {
     Api::FreeFactor(&this->Symbolic, &this->Common);
     View<typename Api::Index> view(lower);
@@ -156,14 +156,14 @@ public:
     this->Entries = static_cast<std::int64_t>(this->Common.lnz);
     if (this->Entries > this->Limits.Entries)
     {
-      return FactorStatus::OutOfMemory;
+      return SolverStatus::OutOfMemory;
     }
     const bool isWide = Api::Type == CHOLMOD_LONG;
-    return !isWide && this->Entries > this->Limits.NarrowEntries ? FactorStatus::TooLarge
-                                                                 : FactorStatus::Ok;
+    return !isWide && this->Entries > this->Limits.NarrowEntries ? SolverStatus::TooLarge
+                                                                 : SolverStatus::Ok;
   }
 
-  FactorStatus Factorize(const SparseMatrix& lower) override
+  SolverStatus Factorize(const SparseMatrix& lower) override
   {
     Api::FreeFactor(&this->Factors, &this->Common);
     View<typename Api::Index> view(lower);
@@ -178,11 +178,12 @@ public:
     // motion are solved twice as fast by the simplicial factor, which takes four
     // at a time through memory once. It is smaller, too.
     return Api::ChangeFactor(CHOLMOD_REAL, 1, 0, 1, 1, this->Factors, &this->Common)
-      ? FactorStatus::Ok
+      ? SolverStatus::Ok
       : this->Status();
   }
 
-  FactorStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) override
+  SolverStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
+    const ExecutionContext& /*context*/) override
   {
     cholmod_dense view = {};
     view.nrow = rightHandSide.rows();
@@ -195,7 +196,7 @@ public:
     // The work space is kept: a drag solves the same size again and again.
     return Api::Solve(CHOLMOD_A, this->Factors, &view, nullptr, &this->Solution, nullptr,
              &this->Work, &this->WorkE, &this->Common)
-      ? FactorStatus::Ok
+      ? SolverStatus::Ok
       : this->Status();
   }
 
@@ -209,19 +210,19 @@ public:
   std::size_t GetBytes() const override { return this->Common.memory_inuse; }
 
 private:
-  FactorStatus Status() const
+  SolverStatus Status() const
   {
     switch (this->Common.status)
     {
       case CHOLMOD_NOT_POSDEF:
       case CHOLMOD_DSMALL:
-        return FactorStatus::NotPositiveDefinite;
+        return SolverStatus::NotPositiveDefinite;
       case CHOLMOD_TOO_LARGE:
-        return FactorStatus::TooLarge;
+        return SolverStatus::TooLarge;
       case CHOLMOD_OUT_OF_MEMORY:
-        return FactorStatus::OutOfMemory;
+        return SolverStatus::OutOfMemory;
       default:
-        return FactorStatus::Failed;
+        return SolverStatus::Failed;
     }
   }
 
@@ -237,7 +238,7 @@ private:
 
 /// Begins with narrow indices and goes on with wide ones where these do not
 /// suffice.
-class CholmodFactor : public CholeskyFactor
+class CholmodFactor : public SymmetricSolver
 {
 public:
   explicit CholmodFactor(const FactorLimits& limits)
@@ -246,30 +247,31 @@ public:
   {
   }
 
-  FactorStatus Analyze(const SparseMatrix& lower) override
+  SolverStatus Analyze(const SparseMatrix& lower) override
   {
     if (this->IsWide)
     {
       this->Current = std::make_unique<Factorization<Narrow>>(this->Limits);
       this->IsWide = false;
     }
-    const FactorStatus status = this->Current->Analyze(lower);
-    return status == FactorStatus::TooLarge ? this->Widen(lower) : status;
+    const SolverStatus status = this->Current->Analyze(lower);
+    return status == SolverStatus::TooLarge ? this->Widen(lower) : status;
   }
 
-  FactorStatus Factorize(const SparseMatrix& lower) override
+  SolverStatus Factorize(const SparseMatrix& lower) override
   {
-    FactorStatus status = this->Current->Factorize(lower);
+    SolverStatus status = this->Current->Factorize(lower);
     // Supernodes take more entries than L has, which the analysis counts.
-    if (status == FactorStatus::TooLarge && !this->IsWide)
+    if (status == SolverStatus::TooLarge && !this->IsWide)
     {
       status = this->Widen(lower);
-      status = status == FactorStatus::Ok ? this->Current->Factorize(lower) : status;
+      status = status == SolverStatus::Ok ? this->Current->Factorize(lower) : status;
     }
     return status;
   }
 
-  FactorStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) override
+  SolverStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
+    const ExecutionContext& /*context*/) override
   {
     return this->Current->Solve(rightHandSide);
   }
@@ -281,7 +283,7 @@ public:
   std::size_t GetBytes() const override { return this->Current->GetBytes(); }
 
 private:
-  FactorStatus Widen(const SparseMatrix& lower)
+  SolverStatus Widen(const SparseMatrix& lower)
   {
     this->IsWide = true;
     this->Current = std::make_unique<Factorization<Wide>>(this->Limits);
@@ -290,12 +292,12 @@ private:
 
   FactorLimits Limits;
   bool IsWide = false;
-  std::unique_ptr<CholeskyFactor> Current;
+  std::unique_ptr<SymmetricSolver> Current;
 };
 }
 #endif
 
-std::unique_ptr<CholeskyFactor> MakeCholmodFactor(const FactorLimits& limits)
+std::unique_ptr<SymmetricSolver> MakeCholmodFactor(const FactorLimits& limits)
 {
 #ifdef CARTAN_HAVE_CHOLMOD
   return std::make_unique<CholmodFactor>(limits);

@@ -80,19 +80,25 @@ void RequireConstraints(const SparseMatrix& matrix, const std::vector<char>& isF
   }
 }
 
-/// Runs a step of a factorization and throws what its status means.
+/// The status of a solver's step, which may also run out of memory.
 template <typename Action>
-void RequireStep(Eigen::Index unknowns, const Action& action)
+SolverStatus RunStep(const Action& action)
 {
-  FactorStatus status = FactorStatus::OutOfMemory;
   try
   {
-    status = action();
+    return action();
   }
   catch (const std::bad_alloc&)
   {
+    return SolverStatus::OutOfMemory;
   }
-  RequireFactor(status, unknowns);
+}
+
+SolverBackend DirectUnlessNamed(SolverBackend backend)
+{
+  return backend != SolverBackend::Automatic ? backend
+    : HasCholmod()                           ? SolverBackend::Cholmod
+                                             : SolverBackend::Eigen;
 }
 
 bool SamePattern(const SparseMatrix& a, const SparseMatrix& b)
@@ -104,13 +110,11 @@ bool SamePattern(const SparseMatrix& a, const SparseMatrix& b)
 }
 
 ConstrainedSolver::ConstrainedSolver(SolverBackend backend, const FactorLimits& limits)
-  : Backend(backend)
-  , Factor(MakeCholeskyFactor(backend, limits))
+  : Asked(backend)
+  , Limits(limits)
+  , Backend(DirectUnlessNamed(backend))
+  , Solver(MakeSymmetricSolver(backend, limits))
 {
-  if (backend == SolverBackend::Automatic)
-  {
-    this->Backend = HasCholmod() ? SolverBackend::Cholmod : SolverBackend::Eigen;
-  }
 }
 
 ConstrainedSolver::~ConstrainedSolver() = default;
@@ -172,6 +176,32 @@ SparseMatrix ConstrainedSolver::SplitBlocks(
   return block;
 }
 
+SolverStatus ConstrainedSolver::FactorizeAs(SolverBackend backend, const SparseMatrix& block,
+  bool isAnalyzed, const ExecutionContext& context)
+{
+  if (backend != this->Backend)
+  {
+    this->Solver = MakeSymmetricSolver(backend, this->Limits);
+    this->Backend = backend;
+    isAnalyzed = false;
+  }
+  SolverStatus status = SolverStatus::Ok;
+  if (!isAnalyzed)
+  {
+    ++this->Analyses;
+    status =
+      RunStep([&]() { return block.rows() > 0 ? this->Solver->Analyze(block) : SolverStatus::Ok; });
+  }
+  context.Report(0.4);
+  if (status != SolverStatus::Ok)
+  {
+    return status;
+  }
+  ++this->Factorizations;
+  return RunStep(
+    [&]() { return block.rows() > 0 ? this->Solver->Factorize(block) : SolverStatus::Ok; });
+}
+
 void ConstrainedSolver::Factorize(const SparseMatrix& matrix, const std::vector<char>& isFixed,
   const Eigen::VectorXd& stiffness, const std::vector<int>& vertices,
   const ExecutionContext& context)
@@ -186,52 +216,56 @@ void ConstrainedSolver::Factorize(const SparseMatrix& matrix, const std::vector<
   // Empty until it is factorized: the next call must not reuse what a failure
   // leaves behind.
   this->FreeBlock = SparseMatrix();
-  if (!isAnalyzed)
+  const bool isLarge = this->Asked == SolverBackend::Automatic && HasHypre() &&
+    numberOfFree > this->Limits.DirectUnknowns;
+  SolverStatus status = SolverStatus::NotConverged;
+  if (isLarge)
   {
-    ++this->Analyses;
-    RequireStep(numberOfFree,
-      [&]() { return numberOfFree > 0 ? this->Factor->Analyze(block) : FactorStatus::Ok; });
+    status = this->FactorizeAs(SolverBackend::ConjugateGradients, block, isAnalyzed, context);
   }
-  context.Report(0.4);
-  ++this->Factorizations;
-  RequireStep(numberOfFree,
-    [&]() { return numberOfFree > 0 ? this->Factor->Factorize(block) : FactorStatus::Ok; });
+  // Also where the iteration does not solve such a matrix.
+  if (status != SolverStatus::Ok)
+  {
+    status = this->FactorizeAs(DirectUnlessNamed(this->Asked), block, isAnalyzed, context);
+  }
+  RequireSolver(status, numberOfFree);
   this->FreeBlock.swap(block); // Eigen has no move of sparse matrices
   context.Report(1.0);
 }
 
 std::size_t ConstrainedSolver::GetBytes() const
 {
-  return (this->Factor ? this->Factor->GetBytes() : 0) +
+  return (this->Solver ? this->Solver->GetBytes() : 0) +
     TotalBytes(this->Free, this->FreeIndex, this->FreeBlock, this->Coupling);
 }
 
 Eigen::Map<const Eigen::MatrixXd> ConstrainedSolver::SolveFree(
-  const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const
+  const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide, const ExecutionContext& context) const
 {
   if (this->Free.empty())
   {
     return { nullptr, 0, rightHandSide.cols() };
   }
-  RequireStep(rightHandSide.rows(), [&]() { return this->Factor->Solve(rightHandSide); });
-  if (!this->Factor->GetSolution().allFinite())
+  RequireSolver(
+    RunStep([&]() { return this->Solver->Solve(rightHandSide, context); }), rightHandSide.rows());
+  if (!this->Solver->GetSolution().allFinite())
   {
     throw Error(ErrorCode::NotPositiveDefinite,
       "The system of " + std::to_string(this->Free.size()) +
         " unknowns has no finite solution: it is singular up to rounding.");
   }
-  return this->Factor->GetSolution();
+  return this->Solver->GetSolution();
 }
 
-void ConstrainedSolver::Solve(
-  const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const
+void ConstrainedSolver::Solve(const Eigen::Ref<const Field>& rightHandSide,
+  Eigen::Ref<Field> values, const ExecutionContext& context) const
 {
   Eigen::MatrixXd reduced = -(this->Coupling * values);
   for (std::size_t i = 0; rightHandSide.size() && i < this->Free.size(); ++i)
   {
     reduced.row(i) += rightHandSide.row(this->Free[i]);
   }
-  const Eigen::Map<const Eigen::MatrixXd> solution = this->SolveFree(reduced);
+  const Eigen::Map<const Eigen::MatrixXd> solution = this->SolveFree(reduced, context);
   for (std::size_t i = 0; i < this->Free.size(); ++i)
   {
     values.row(this->Free[i]) = solution.row(i);

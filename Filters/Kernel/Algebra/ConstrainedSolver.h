@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Algebra/CholeskyFactor.h"
+#include "Algebra/SymmetricSolver.h"
 #include "Base/ExecutionContext.h"
 
 #include <memory>
@@ -34,7 +34,7 @@ public:
   /// Throws Error(SingularSystem) when free unknowns that are connected through
   /// non-zero entries reach neither a fixed unknown nor a stiffness. The message
   /// lists vertices: `vertices` names that of each unknown (#U, increasing among
-  /// the free ones; empty where they are the same). Throws what RequireFactor
+  /// the free ones; empty where they are the same). Throws what RequireSolver
   /// throws when the factorization fails.
   void Factorize(const SparseMatrix& matrix, const std::vector<char>& isFixed,
     const Eigen::VectorXd& stiffness = {}, const std::vector<int>& vertices = {},
@@ -45,13 +45,16 @@ public:
 
   /// x_f for the right-hand side b_f - A_fc x_c given whole: #free x k each. The
   /// result lies in the solver's memory and is valid until the next solve.
-  /// Throws Error(NotPositiveDefinite) when it is not finite.
+  /// Throws Error(NotPositiveDefinite) when it is not finite, and Error(NotConverged)
+  /// when conjugate gradients do not reach their tolerance.
   Eigen::Map<const Eigen::MatrixXd> SolveFree(
-    const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const;
+    const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
+    const ExecutionContext& context = {}) const;
 
   /// The convenient form: `rightHandSide` (b, #U x k; empty for zero) and `values`
   /// (#U x k), of which the fixed rows are read and the free rows are written.
-  void Solve(const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values) const;
+  void Solve(const Eigen::Ref<const Field>& rightHandSide, Eigen::Ref<Field> values,
+    const ExecutionContext& context = {}) const;
 
   /// How many numeric and symbolic factorizations there have been.
   int GetNumberOfFactorizations() const { return this->Factorizations; }
@@ -60,14 +63,19 @@ public:
   /// The memory of the factors and of the matrices that are kept with them.
   std::size_t GetBytes() const;
 
+  /// The one that is used, Automatic before it is known.
   SolverBackend GetBackend() const { return this->Backend; }
 
 private:
+  SolverStatus FactorizeAs(SolverBackend backend, const SparseMatrix& block, bool isAnalyzed,
+    const ExecutionContext& context);
   void NumberFree(const std::vector<char>& isFixed);
   SparseMatrix SplitBlocks(const SparseMatrix& matrix, const Eigen::VectorXd& stiffness);
 
-  SolverBackend Backend;
-  std::unique_ptr<CholeskyFactor> Factor;
+  SolverBackend Asked;
+  FactorLimits Limits;
+  SolverBackend Backend; // of Solver
+  std::unique_ptr<SymmetricSolver> Solver;
   std::vector<int> Free;
   std::vector<int> FreeIndex; // #U, -1 where fixed
   SparseMatrix FreeBlock;     // lower triangle of A_ff + diag s_f

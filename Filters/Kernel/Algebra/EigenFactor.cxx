@@ -104,10 +104,10 @@ public:
     return entries;
   }
 
-  FactorStatus Factorize(const Matrix& lower)
+  SolverStatus Factorize(const Matrix& lower)
   {
     this->factorize(lower);
-    return this->info() == Eigen::Success ? FactorStatus::Ok : FactorStatus::NotPositiveDefinite;
+    return this->info() == Eigen::Success ? SolverStatus::Ok : SolverStatus::NotPositiveDefinite;
   }
 
   void SolveAll(
@@ -145,7 +145,7 @@ public:
   }
 };
 
-class EigenFactor : public CholeskyFactor
+class EigenFactor : public SymmetricSolver
 {
 public:
   explicit EigenFactor(const FactorLimits& limits)
@@ -153,7 +153,7 @@ public:
   {
   }
 
-  FactorStatus Analyze(const SparseMatrix& lower) override
+  SolverStatus Analyze(const SparseMatrix& lower) override
   {
     this->Wide.reset();
     this->Narrow.reset();
@@ -173,20 +173,21 @@ public:
       this->Wide = std::make_unique<Llt<std::int64_t>>();
       this->Entries = this->Wide->Analyze(WideMatrix(lower), this->Limits.Entries);
     }
-    return this->Entries <= this->Limits.Entries ? FactorStatus::Ok : FactorStatus::OutOfMemory;
+    return this->Entries <= this->Limits.Entries ? SolverStatus::Ok : SolverStatus::OutOfMemory;
   }
 
-  FactorStatus Factorize(const SparseMatrix& lower) override
+  SolverStatus Factorize(const SparseMatrix& lower) override
   {
     return this->Wide ? this->Wide->Factorize(lower) : this->Narrow->Factorize(lower);
   }
 
-  FactorStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) override
+  SolverStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
+    const ExecutionContext& /*context*/) override
   {
     this->Solution.resize(rightHandSide.rows(), rightHandSide.cols());
     this->Wide ? this->Wide->SolveAll(rightHandSide, this->Solution)
                : this->Narrow->SolveAll(rightHandSide, this->Solution);
-    return FactorStatus::Ok;
+    return SolverStatus::Ok;
   }
 
   Eigen::Map<const Eigen::MatrixXd> GetSolution() const override
@@ -211,7 +212,7 @@ private:
 };
 }
 
-std::unique_ptr<CholeskyFactor> MakeEigenFactor(const FactorLimits& limits)
+std::unique_ptr<SymmetricSolver> MakeEigenFactor(const FactorLimits& limits)
 {
   return std::make_unique<EigenFactor>(limits);
 }

@@ -90,14 +90,14 @@ void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransf
   }
   if (!isDirect)
   {
-    this->SolvePositions(targets, this->Transforms, result, context);
+    this->SolvePositions(targets, this->Transforms, result, context.Part(0.4, 0.7));
     context.Report(0.7);
   }
   if (this->PreservesVolume())
   {
     if (this->Correction == VolumeCorrection::FrameScaling)
     {
-      this->ScaleFrames(targets, result, context);
+      this->ScaleFrames(targets, result, context.Part(0.7, 1.0));
     }
     if (this->Close)
     {
@@ -312,7 +312,7 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
         rightHandSide.row(i) = this->RightHandSide(i, targets, transforms, result);
       }
     });
-  const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide);
+  const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide, context);
   for (int i = 0; i < system.NumberOfUnknowns(); ++i)
   {
     const int v = system.Vertex(i);

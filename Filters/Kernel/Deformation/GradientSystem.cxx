@@ -117,7 +117,7 @@ GradientSystem::GradientSystem(const HandleProblem& problem, int coherenceRings,
   bool constrainTransforms, SolverBackend backend, const ExecutionContext& context)
   : MovingHandles(MovingHandleOfVertices(problem))
   , EdgeWeights(cartan::EdgeWeights(*problem.Mesh, *problem.Rest, problem.Weights, context))
-  , System(backend)
+  , System(RequireDirect(backend, "Similarity deformation"))
 {
   const GradientConstraints constraints = this->ReadConstraints(problem, constrainTransforms);
   this->RequireDeterminedSurface(problem, constraints);

@@ -15,6 +15,9 @@ enum class Hold
   PinnedOnly  ///< moving handles are unknown, only pinned ones are held
 };
 
+/// From where on Automatic solves systems of a HandleLaplacian by conjugate gradients.
+FactorLimits LaplacianLimits();
+
 /// Which vertices are unknown when handles are held: those not held that a
 /// moving handle reaches through vertices not held. Softly held ones are
 /// unknown. #V.
@@ -113,23 +116,25 @@ public:
 
   /// The functions that are 1 on one handle of HandleProblem::Moving and 0 on
   /// all others and the pinned ones, harmonic elsewhere: #locals x #Moving.
-  Field HarmonicFields() const;
+  Field HarmonicFields(const ExecutionContext& context = {}) const;
 
   /// The functions, harmonic at unknown vertices, with the given values where
   /// moving handles hold and zero where pinned ones do: #locals x components.
   /// `target` writes the values of a local vertex.
-  Field Spread(int components, const std::function<void(int local, double* values)>& target) const;
+  Field Spread(int components, const std::function<void(int local, double* values)>& target,
+    const ExecutionContext& context = {}) const;
 
   /// Solves L x = b: `rightHandSide` has a row per unknown and already contains
   /// what held neighbors and soft targets add. Returns #unknowns x k, valid until
   /// the next solve.
-  Eigen::Map<const Eigen::MatrixXd> Solve(
-    const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide) const
+  Eigen::Map<const Eigen::MatrixXd> Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
+    const ExecutionContext& context = {}) const
   {
-    return this->System.SolveFree(rightHandSide);
+    return this->System.SolveFree(rightHandSide, context);
   }
 
   int GetNumberOfFactorizations() const { return this->System.GetNumberOfFactorizations(); }
+  SolverBackend GetBackend() const { return this->System.GetBackend(); }
 
   std::size_t GetBytes() const
   {

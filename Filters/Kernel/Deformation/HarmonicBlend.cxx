@@ -19,12 +19,14 @@ Field HarmonicBlend::Blend(const Field& ofHandles, const ExecutionContext& conte
   const int components = static_cast<int>(ofHandles.cols());
   if (!this->Stores)
   {
-    return this->System->Spread(components,
+    return this->System->Spread(
+      components,
       [&](int local, double* values)
       {
         Eigen::Map<Eigen::RowVectorXd>(values, components) =
           ofHandles.row(this->System->MovingHandle(local));
-      });
+      },
+      context);
   }
   Field blend(this->Weights.rows(), components);
   context.For(static_cast<int>(blend.rows()),

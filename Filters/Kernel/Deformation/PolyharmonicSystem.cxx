@@ -11,7 +11,8 @@ namespace cartan
 PolyharmonicSystem::PolyharmonicSystem(
   const HandleProblem& problem, int order, SolverBackend backend, const ExecutionContext& context)
   : Order(order)
-  , System(backend)
+  , System(
+      order == 1 ? backend : RequireDirect(backend, "A method of order " + std::to_string(order)))
 {
   const TriangleMesh& mesh = *problem.Mesh;
   const std::vector<char> isUnknown = UnknownVertices(problem, Hold::AllHandles);

@@ -79,12 +79,14 @@ void RotationInvariantDeformer::ComputeTransforms(
 
   // R - I is harmonic with the values that the held vertices give, and near those
   // that softly held ones give, projected alike.
-  const Field differences = frames.Spread(9,
+  const Field differences = frames.Spread(
+    9,
     [&](int local, double* values)
     {
       Eigen::Map<Eigen::Matrix3d>(values, 3, 3) =
         MatrixAt(this->Transforms, frames.Vertex(local)) - Eigen::Matrix3d::Identity();
-    });
+    },
+    context);
   this->AddIdentity(differences, project, context);
 }
 
@@ -239,7 +241,7 @@ void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& contex
         }
       }
     });
-  const Eigen::Map<const Eigen::MatrixXd> phi = system.Solve(rightHandSide);
+  const Eigen::Map<const Eigen::MatrixXd> phi = system.Solve(rightHandSide, context);
   this->DragFields.resize(numberOfUnknowns, 3 + 4 * numberOfMoving);
   for (int i = 0; i < numberOfUnknowns; ++i)
   {

@@ -49,7 +49,7 @@ ShapePreservingDeformer::ShapePreservingDeformer(
   HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
   : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.9))
   , Harmonic(this->Problem, this->FrameSystem)
-  , IterationSystem(backend)
+  , IterationSystem(backend, LaplacianLimits())
 {
   context.Report(1.0);
 }
@@ -84,10 +84,12 @@ Field ShapePreservingDeformer::Spread(const HandleTargets& targets, int componen
     }
     return this->Harmonic.Blend(ofHandles, context);
   }
-  return frames.Spread(components,
+  return frames.Spread(
+    components,
     [&](int local, double* values) {
       coordinates({ frames.Vertex(local), frames.MovingHandle(local) }, values);
-    });
+    },
+    context);
 }
 
 void ShapePreservingDeformer::ForgetIterations()

@@ -27,7 +27,7 @@ VolumetricDeformer::VolumetricDeformer(
   : SurfaceDeformer(RequirePositions(std::move(problem), "Volumetric deformation"))
   , Graph(std::move(graph))
   , MovingHandles(MovingHandleOfVertices(this->Problem))
-  , System(backend)
+  , System(RequireDirect(backend, "Volumetric deformation"))
 {
   // Joined vertices are one node, the one that stands for them.
   for (Eigen::Index i = 0; i < this->Graph.Edges.size() && !this->Problem.JoinedWith.empty(); ++i)

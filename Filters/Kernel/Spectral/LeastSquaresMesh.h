@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Algebra/CholeskyFactor.h"
+#include "Algebra/SymmetricSolver.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
 
