@@ -351,7 +351,8 @@ void vtkSurfaceDeformation::Deform(cartan::FilterRun& run)
 {
   static_assert(static_cast<int>(cartan::SolverBackend::Automatic) == AUTOMATIC_SOLVER &&
       static_cast<int>(cartan::SolverBackend::Eigen) == EIGEN &&
-      static_cast<int>(cartan::SolverBackend::Cholmod) == CHOLMOD,
+      static_cast<int>(cartan::SolverBackend::Cholmod) == CHOLMOD &&
+      static_cast<int>(cartan::SolverBackend::ConjugateGradients) == CONJUGATE_GRADIENTS,
     "the enumerations agree");
   const double start = vtkTimerLog::GetUniversalTime();
   vtkPolyData* input = run.Input();

@@ -215,19 +215,25 @@ public:
   {
     AUTOMATIC_SOLVER = 0,
     EIGEN = 1,
-    CHOLMOD = 2
+    CHOLMOD = 2,
+    CONJUGATE_GRADIENTS = 3
   };
 
   ///@{
   /**
-   * The sparse Cholesky factorization. AUTOMATIC_SOLVER: CHOLMOD if Cartan was
-   * built with it, else Eigen. Default: AUTOMATIC_SOLVER.
+   * What solves the sparse systems. EIGEN and CHOLMOD: a Cholesky factorization.
+   * CONJUGATE_GRADIENTS: iterations with hypre's multigrid to a relative residual of 1e-10,
+   * for methods with a Laplacian system (the others give an error); a third of the memory,
+   * and slower motions. AUTOMATIC_SOLVER: CHOLMOD if Cartan was built with it, else Eigen;
+   * for Laplacian systems of more than four million free points CONJUGATE_GRADIENTS if
+   * Cartan was built with hypre. Default: AUTOMATIC_SOLVER.
    */
-  vtkSetClampMacro(Solver, int, AUTOMATIC_SOLVER, CHOLMOD);
+  vtkSetClampMacro(Solver, int, AUTOMATIC_SOLVER, CONJUGATE_GRADIENTS);
   vtkGetMacro(Solver, int);
   void SetSolverToAutomatic() { this->SetSolver(AUTOMATIC_SOLVER); }
   void SetSolverToEigen() { this->SetSolver(EIGEN); }
   void SetSolverToCholmod() { this->SetSolver(CHOLMOD); }
+  void SetSolverToConjugateGradients() { this->SetSolver(CONJUGATE_GRADIENTS); }
   ///@}
 
   ///@{

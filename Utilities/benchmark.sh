@@ -41,4 +41,7 @@ OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkMerge
 build/benchmarks/bin/CartanBenchmarkMorph
 OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkSpectrum
 OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkCompression
+for solver in cholmod cg; do
+  OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkSolver 400000 "$solver"
+done
 build/benchmarks/bin/CartanBenchmarkDeformation "$@"

@@ -10,7 +10,7 @@
 #include "vtkSimilarityDeformation.h"
 
 #include "Bridge/DeformationMethod.h"
-#include "Kernel/Algebra/CholeskyFactor.h"
+#include "Kernel/Algebra/SymmetricSolver.h"
 #include "Kernel/Base/Error.h"
 
 #include <cmath>
@@ -348,8 +348,8 @@ protected:
   cartan::DeformationMethod NewMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override
   {
-    cartan::RequireFactor(backend == cartan::SolverBackend::Eigen ? cartan::FactorStatus::Ok
-                                                                  : cartan::FactorStatus::Failed,
+    cartan::RequireSolver(backend == cartan::SolverBackend::Eigen ? cartan::SolverStatus::Ok
+                                                                  : cartan::SolverStatus::Failed,
       40);
     return this->Superclass::NewMethod(problem, backend, context);
   }
@@ -366,6 +366,35 @@ TEST(AdviceOnDeformations, AnotherSolverSolvesWhereOneFails)
     { "The system of 40 unknowns could not be solved", Advice("Choose another Solver.") });
   deform->SetSolverToEigen();
   vtktest::ExpectEnds(deform.Works(), bar, Turn(30.0));
+}
+
+TEST(AdviceOnDeformations, ConjugateGradientsDeformOrNameAnotherSolver)
+{
+  Advised<vtkLaplacianDeformation> ofOrderTwo;
+  Advised<vtkRotationInvariantDeformation> deform;
+  const auto bar = MarkedBar();
+  const auto prepare = [&bar](vtkSurfaceDeformation* filter)
+  {
+    filter->SetInputData(bar);
+    filter->SetHandleMotion(2, Turn(30.0));
+    filter->SetSolverToConjugateGradients();
+  };
+  prepare(ofOrderTwo.Get());
+  prepare(deform.Get());
+  if (!cartan::HasHypre())
+  {
+    deform.Refuses({ "built without hypre", Advice("choose Eigen's solver.") });
+    deform->SetSolverToEigen();
+    vtktest::ExpectEnds(deform.Works(), bar, Turn(30.0));
+    return;
+  }
+  ofOrderTwo.Refuses(
+    { "A method of order 2", Advice("choose another solver, such as Automatic.") });
+  ofOrderTwo->SetSolverToAutomatic();
+  vtktest::ExpectEnds(ofOrderTwo.Works(), bar, Turn(30.0));
+  const cartan::Points iterative = vtktest::PointsOf(deform.Works());
+  deform->SetSolverToEigen();
+  EXPECT_LT((iterative - vtktest::PointsOf(deform.Works())).cwiseAbs().maxCoeff(), 1e-8);
 }
 
 TEST(AdviceOnDeformations, EigenSolvesWhereCholmodIsMissing)
