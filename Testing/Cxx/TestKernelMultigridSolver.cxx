@@ -2,6 +2,7 @@
 #include "AdviceWords.h"
 #include "AllDeformers.h"
 #include "HandleShapes.h"
+#include "RealMeshes.h"
 
 #include "Kernel/Algebra/ConstrainedSolver.h"
 #include "Kernel/Algebra/Rotation.h"
@@ -9,6 +10,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -37,16 +42,11 @@ protected:
   }
 };
 
-cartan::TriangleMesh MeshOf(const Shape& shape)
-{
-  return { shape.NumberOfVertices(), shape.Faces };
-}
-
 /// The cotangent Laplacian of an uneven square of about count^2 vertices plus `shift`.
 SparseMatrix SquareMatrix(int count, double shift)
 {
   const Shape plane = shapes::Plane(count, 1.0, 0.3);
-  const cartan::TriangleMesh mesh = MeshOf(plane);
+  const cartan::TriangleMesh mesh = shapes::MakeMesh(plane);
   SparseMatrix identity(mesh.NumberOfVertices(), mesh.NumberOfVertices());
   identity.setIdentity();
   return cartan::Laplacian(
@@ -68,6 +68,14 @@ SparseMatrix HeldSquare(int count)
 SparseMatrix LowerOf(const SparseMatrix& matrix)
 {
   return matrix.triangularView<Eigen::Lower>();
+}
+
+/// For a ConstrainedSolver.
+std::vector<char> FirstFixed(const SparseMatrix& matrix)
+{
+  std::vector<char> isFixed(matrix.rows(), 0);
+  isFixed[0] = 1;
+  return isFixed;
 }
 
 Eigen::MatrixXd RandomColumns(Eigen::Index rows, int columns)
@@ -102,12 +110,15 @@ TEST_F(MultigridSolver, ReachesItsToleranceForAnyNumberOfUnknownsAndColumns)
     ASSERT_EQ(solver->Factorize(LowerOf(matrix)), SolverStatus::Ok);
     Eigen::MatrixXd rightHandSide = RandomColumns(matrix.rows(), 4);
     rightHandSide.col(1).setZero();
-    rightHandSide.col(2) *= 1e-12;
+    // Their squares are beyond what numbers can count.
+    rightHandSide.col(2) *= 1e-200;
+    rightHandSide.col(3) *= 1e+200;
     ASSERT_EQ(solver->Solve(rightHandSide), SolverStatus::Ok);
     const Eigen::MatrixXd left = rightHandSide - matrix * solver->GetSolution();
     for (int column = 0; column < 4; ++column)
     {
-      EXPECT_LE(left.col(column).norm(), 1.001e-10 * rightHandSide.col(column).norm()) << count;
+      EXPECT_LE(left.col(column).stableNorm(), 1.001e-10 * rightHandSide.col(column).stableNorm())
+        << count;
     }
     EXPECT_TRUE(solver->GetSolution().col(1).isZero(0.0));
     const Eigen::MatrixXd narrow = solver->GetSolution();
@@ -161,6 +172,61 @@ TEST_F(MultigridSolver, TellsIndefiniteMatricesAndThoseThatItDoesNotSolve)
   EXPECT_TRUE(solver->GetSolution().isConstant(2.0, 1e-8));
 }
 
+TEST_F(MultigridSolver, RefusesWhatDoesNotFit)
+{
+  const SparseMatrix matrix = SquareMatrix(20, 1e-3);
+  const auto entries = static_cast<std::int64_t>(matrix.nonZeros());
+  cartan::FactorLimits limits;
+  limits.DirectUnknowns = 100;
+  for (const bool fits : { true, false })
+  {
+    limits.Entries = fits ? entries : entries - 1;
+    const auto solver = cartan::MakeSymmetricSolver(SolverBackend::ConjugateGradients, limits);
+    EXPECT_EQ(
+      solver->Analyze(LowerOf(matrix)), fits ? SolverStatus::Ok : SolverStatus::OutOfMemory);
+  }
+  // Factors would take more.
+  limits.Entries = entries / 2;
+  ConstrainedSolver solver(SolverBackend::Automatic, limits);
+  try
+  {
+    solver.Factorize(matrix, FirstFixed(matrix));
+    ADD_FAILURE() << "no error";
+  }
+  catch (const Error& error)
+  {
+    EXPECT_EQ(error.GetCode(), ErrorCode::OutOfMemory);
+  }
+  EXPECT_EQ(solver.GetBackend(), SolverBackend::ConjugateGradients);
+}
+
+TEST_F(MultigridSolver, SolvesAnotherSystemBetweenItsSteps)
+{
+  const SparseMatrix lower = LowerOf(SquareMatrix(30, 1e-3));
+  const Eigen::MatrixXd rightHandSide = RandomColumns(lower.rows(), 1);
+  const auto outer = cartan::MakeSymmetricSolver(SolverBackend::ConjugateGradients);
+  const auto inner = cartan::MakeSymmetricSolver(SolverBackend::ConjugateGradients);
+  ASSERT_EQ(outer->Factorize(lower), SolverStatus::Ok);
+  ASSERT_EQ(inner->Factorize(lower), SolverStatus::Ok);
+  const cartan::ExecutionContext context(
+    nullptr, [&](double) { return inner->Solve(rightHandSide) == SolverStatus::Ok; });
+  ASSERT_EQ(outer->Solve(rightHandSide, context), SolverStatus::Ok);
+  EXPECT_EQ(outer->GetSolution(), inner->GetSolution());
+}
+
+TEST_F(MultigridSolver, SaysWhereARightHandSideIsNotFinite)
+{
+  const SparseMatrix matrix = SquareMatrix(5, 1e-3);
+  ConstrainedSolver solver(SolverBackend::ConjugateGradients);
+  solver.Factorize(matrix, FirstFixed(matrix));
+  for (const double value : { std::nan(""), std::numeric_limits<double>::infinity() })
+  {
+    Eigen::MatrixXd rightHandSide = RandomColumns(matrix.rows() - 1, 2);
+    rightHandSide(7, 1) = value;
+    EXPECT_THROW(solver.SolveFree(rightHandSide), Error) << value;
+  }
+}
+
 TEST_F(MultigridSolver, StopsBetweenSteps)
 {
   const SparseMatrix lower = LowerOf(SquareMatrix(30, 1e-3));
@@ -188,9 +254,7 @@ TEST_F(MultigridSolver, IsChosenForManyUnknownsWhereItConverges)
   const auto solve = [&](const SparseMatrix& matrix, SolverBackend backend)
   {
     ConstrainedSolver solver(backend, limits);
-    std::vector<char> isFixed(matrix.rows(), 0);
-    isFixed[0] = 1;
-    solver.Factorize(matrix, isFixed);
+    solver.Factorize(matrix, FirstFixed(matrix));
     cartan::Field values = cartan::Field::Zero(matrix.rows(), 1);
     values(0, 0) = 1.0;
     solver.Solve(cartan::Field(RandomColumns(matrix.rows(), 1)), values);
@@ -228,17 +292,21 @@ struct Results
   std::map<std::string, std::string> Messages;
 };
 
-Results DeformAll(const Shape& shape, SolverBackend backend)
+Results Deform(const cartan::HandleProblem& problem, SolverBackend backend,
+  const std::set<std::string>& methods = {})
 {
   cartan::HandleTargets targets;
   targets.Motions.resize(1);
   targets.Motions[0].RotationVector = Eigen::Vector3d(0.5, 0.2, -0.3);
   targets.Motions[0].Linear = cartan::RotationFromVector(targets.Motions[0].RotationVector);
   targets.Motions[0].Translation = Eigen::Vector3d(0.1, 0.3, 0.2);
-  const cartan::HandleProblem problem = shapes::ProblemOf(shape, shapes::EndsAlong(shape, 0, 0.15));
   Results results;
   for (const auto& [name, make] : deformers::All(backend))
   {
+    if (!methods.empty() && methods.count(name) == 0)
+    {
+      continue;
+    }
     try
     {
       cartan::DeformedSurface result;
@@ -253,30 +321,68 @@ Results DeformAll(const Shape& shape, SolverBackend backend)
   return results;
 }
 
-TEST_F(MultigridSolver, DeformsAsTheDirectSolverOrIsRefused)
+/// The largest difference between two results, by the diagonal of the surface.
+double Difference(const cartan::Points& a, const cartan::Points& b, const cartan::Points& rest)
+{
+  return (a - b).rowwise().norm().maxCoeff() /
+    (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+}
+
+TEST_F(MultigridSolver, DeformsByEachMethodAsTheDirectSolverOrIsRefused)
 {
   const std::set<std::string> served = { "RotationInvariant", "ShapePreserving", "PoissonHarmonic",
     "PoissonGeodesic", "Multiresolution1", "Spokes", "SpokesAndRims", "SmoothedRotations" };
   const Shape shape = shapes::Noisy(shapes::Ellipsoid(4, { 2.0, 1.0, 0.7 }), 0.01);
-  const double diagonal =
-    (shape.Positions.colwise().maxCoeff() - shape.Positions.colwise().minCoeff()).norm();
-  const Results direct = DeformAll(shape, SolverBackend::Eigen);
-  const Results iterative = DeformAll(shape, SolverBackend::ConjugateGradients);
+  const cartan::HandleProblem problem = shapes::ProblemOf(shape, shapes::EndsAlong(shape, 0, 0.15));
+  const Results direct = Deform(problem, SolverBackend::Eigen);
+  const Results iterative = Deform(problem, SolverBackend::ConjugateGradients);
   EXPECT_TRUE(direct.Messages.empty());
   for (const auto& [name, positions] : direct.Positions)
   {
     if (served.count(name))
     {
       ASSERT_TRUE(iterative.Positions.count(name)) << name << iterative.Messages.at(name);
-      EXPECT_LT(
-        (iterative.Positions.at(name) - positions).rowwise().norm().maxCoeff(), 1e-8 * diagonal)
-        << name;
+      EXPECT_LT(Difference(iterative.Positions.at(name), positions, shape.Positions), 1e-8) << name;
       continue;
     }
     ASSERT_TRUE(iterative.Messages.count(name)) << name;
     EXPECT_NE(iterative.Messages.at(name).find(Advice("choose another solver, such as Automatic.")),
       std::string::npos)
       << iterative.Messages.at(name);
+  }
+}
+
+TEST_F(MultigridSolver, DeformsEachSurfaceAsTheDirectSolver)
+{
+  std::map<std::string, Shape> surfaces = { { "bar", shapes::Bar(4, 4, 30, { 1.0, 1.0, 6.0 }) },
+    { "cylinder", shapes::OpenCylinder(30, 60, 0.5, 3.0, 0.4) },
+    { "torus", shapes::Torus(60, 30, 2.0, 0.7, 0.4) },
+    { "plane of uneven triangles", shapes::Plane(40, 1.0, 0.45) },
+    { "needles at the poles", shapes::UvSphere(150, 20) } };
+  for (const char* name : { "camel", "elephant", "lion-head" })
+  {
+    surfaces[name] = shapes::RealMesh(name);
+  }
+  const std::set<std::string> methods = { "RotationInvariant", "ShapePreserving",
+    "PoissonHarmonic" };
+  for (const auto& [name, shape] : surfaces)
+  {
+    cartan::HandleProblem problem = shapes::ProblemOf(shape, shapes::EndsAlong(shape, 1, 0.2));
+    for (const auto weights : { cartan::LaplacianWeights::Uniform,
+           cartan::LaplacianWeights::Cotangent, cartan::LaplacianWeights::MeanValue })
+    {
+      problem.Weights = weights;
+      const Results direct = Deform(problem, SolverBackend::Automatic, methods);
+      const Results iterative = Deform(problem, SolverBackend::ConjugateGradients, methods);
+      EXPECT_EQ(direct.Positions.size(), methods.size()) << name;
+      for (const auto& [method, positions] : direct.Positions)
+      {
+        ASSERT_TRUE(iterative.Positions.count(method))
+          << name << method << iterative.Messages.at(method);
+        EXPECT_LT(Difference(iterative.Positions.at(method), positions, shape.Positions), 1e-8)
+          << name << ", " << method << ", weights " << static_cast<int>(weights);
+      }
+    }
   }
 }
 

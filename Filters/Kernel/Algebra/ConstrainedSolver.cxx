@@ -223,8 +223,8 @@ void ConstrainedSolver::Factorize(const SparseMatrix& matrix, const std::vector<
   {
     status = this->FactorizeAs(SolverBackend::ConjugateGradients, block, isAnalyzed, context);
   }
-  // Also where the iteration does not solve such a matrix.
-  if (status != SolverStatus::Ok)
+  // Also where the iteration does not solve such a matrix. Factors take more memory.
+  if (status != SolverStatus::Ok && status != SolverStatus::OutOfMemory)
   {
     status = this->FactorizeAs(DirectUnlessNamed(this->Asked), block, isAnalyzed, context);
   }

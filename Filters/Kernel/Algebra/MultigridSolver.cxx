@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
+#include <new>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -41,10 +43,15 @@ constexpr HYPRE_Int Hmis = 10;
 constexpr HYPRE_Int ExtendedPlusI = 6;
 constexpr HYPRE_Int InterpolationEntries = 4;
 
-/// hypre's errors and MPI's state belong to the process.
-std::mutex& HypreMutex()
+/// What making the levels takes at most on surfaces, per entry of the whole matrix: 420
+/// bytes per unknown.
+constexpr std::size_t BytesPerEntry = 60;
+
+/// hypre's errors and MPI's state belong to the process. A progress callback that runs
+/// another solver between two steps comes back on the same thread.
+std::recursive_mutex& HypreMutex()
 {
-  static std::mutex mutex;
+  static std::recursive_mutex mutex;
   return mutex;
 }
 
@@ -69,6 +76,13 @@ bool StartHypre()
   }
   static const bool isStarted = HYPRE_Init() == 0;
   return isStarted;
+}
+
+/// Where memory is missing, hypre ends the process. So what it will take is asked for
+/// before: throws std::bad_alloc.
+void RequireMemory(std::size_t bytes)
+{
+  ::operator delete(::operator new(bytes));
 }
 
 /// What hypre's calls since the last status came to.
@@ -226,10 +240,13 @@ private:
 class MultigridSolver : public SymmetricSolver
 {
 public:
-  MultigridSolver() = default;
+  explicit MultigridSolver(const FactorLimits& limits)
+    : Limits(limits)
+  {
+  }
   ~MultigridSolver() override
   {
-    const std::lock_guard<std::mutex> guard(HypreMutex());
+    const std::lock_guard<std::recursive_mutex> guard(HypreMutex());
     int isFinalized = 0;
     MPI_Finalized(&isFinalized);
     if (isFinalized)
@@ -241,17 +258,25 @@ public:
   MultigridSolver(const MultigridSolver&) = delete;
   MultigridSolver& operator=(const MultigridSolver&) = delete;
 
-  SolverStatus Analyze(const SparseMatrix& /*lower*/) override { return SolverStatus::Ok; }
+  /// The entries of the whole matrix are known before.
+  SolverStatus Analyze(const SparseMatrix& lower) override
+  {
+    const std::int64_t entries = 2 * static_cast<std::int64_t>(lower.nonZeros()) - lower.rows();
+    return entries > std::numeric_limits<HYPRE_Int>::max() ? SolverStatus::TooLarge
+      : entries > this->Limits.Entries                     ? SolverStatus::OutOfMemory
+                                                           : SolverStatus::Ok;
+  }
 
   SolverStatus Factorize(const SparseMatrix& lower) override
   {
     {
-      const std::lock_guard<std::mutex> guard(HypreMutex());
+      const std::lock_guard<std::recursive_mutex> guard(HypreMutex());
       if (!StartHypre())
       {
         return SolverStatus::Failed;
       }
       this->Levels.reset();
+      RequireMemory(BytesPerEntry * 2 * static_cast<std::size_t>(lower.nonZeros()));
       this->Levels = std::make_unique<Multigrid>(lower);
       this->Entries = this->Levels->CountEntries();
       const SolverStatus status = TakeStatus();
@@ -272,7 +297,7 @@ public:
   SolverStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
     const ExecutionContext& context) override
   {
-    const std::lock_guard<std::mutex> guard(HypreMutex());
+    const std::lock_guard<std::recursive_mutex> guard(HypreMutex());
     if (!StartHypre())
     {
       return SolverStatus::Failed;
@@ -307,9 +332,16 @@ public:
 private:
   /// Conjugate gradients measure the norm of A, and their residual drifts from b - A x by
   /// rounding. So they start again from the true one until that is small too.
-  SolverStatus SolveColumn(
-    const VectorXd& rightHandSide, Index column, const ExecutionContext& context)
+  SolverStatus SolveColumn(const VectorXd& given, Index column, const ExecutionContext& context)
   {
+    // Squares of the largest and smallest numbers are none.
+    const double scale = given.cwiseAbs().maxCoeff();
+    if (!(scale > 0.0) || !std::isfinite(scale))
+    {
+      this->Solution.col(column).setConstant(scale);
+      return SolverStatus::Ok;
+    }
+    const VectorXd rightHandSide = given / scale;
     const double size = rightHandSide.norm();
     VectorXd solution = VectorXd::Zero(rightHandSide.size());
     VectorXd residual = rightHandSide;
@@ -346,7 +378,7 @@ private:
       reduction = 0.1 * Tolerance * size / residual.norm();
       status = TakeStatus();
     }
-    this->Solution.col(column) = solution;
+    this->Solution.col(column) = scale * solution;
     if (status != SolverStatus::Ok || isIndefinite)
     {
       return isIndefinite ? SolverStatus::NotPositiveDefinite : status;
@@ -355,6 +387,7 @@ private:
                                                                : SolverStatus::NotConverged;
   }
 
+  FactorLimits Limits;
   std::unique_ptr<Multigrid> Levels;
   std::int64_t Entries = 0;
   Eigen::MatrixXd Solution;
@@ -371,11 +404,12 @@ bool HasHypre()
 #endif
 }
 
-std::unique_ptr<SymmetricSolver> MakeMultigridSolver()
+std::unique_ptr<SymmetricSolver> MakeMultigridSolver(const FactorLimits& limits)
 {
 #ifdef CARTAN_HAVE_HYPRE
-  return std::make_unique<MultigridSolver>();
+  return std::make_unique<MultigridSolver>(limits);
 #else
+  static_cast<void>(limits);
   return nullptr;
 #endif
 }

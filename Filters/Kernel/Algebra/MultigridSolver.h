@@ -13,7 +13,8 @@ namespace cartan
 /// 1e-10. Each factorization solves for a random right-hand side first: NotConverged
 /// where that takes too many steps. The same input gives the same bits.
 ///
-/// Starts MPI when nothing else in the process has, for this process alone, and leaves
-/// it running; Failed after MPI was finalized. Null when not built with hypre.
-std::unique_ptr<SymmetricSolver> MakeMultigridSolver();
+/// Of `limits`, Entries counts those of the whole matrix. Starts MPI when nothing else in
+/// the process has, for this process alone, and leaves it running; Failed after MPI was
+/// finalized. Null when not built with hypre.
+std::unique_ptr<SymmetricSolver> MakeMultigridSolver(const FactorLimits& limits);
 }

@@ -72,7 +72,7 @@ std::unique_ptr<SymmetricSolver> MakeSymmetricSolver(
       throw Error(ErrorCode::BadInput,
         "Cartan was built without hypre and has no conjugate gradients: choose Eigen's solver.");
     }
-    return MakeMultigridSolver();
+    return MakeMultigridSolver(limits);
   }
   const bool useCholmod =
     backend == SolverBackend::Cholmod || (backend == SolverBackend::Automatic && HasCholmod());
