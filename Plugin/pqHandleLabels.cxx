@@ -9,6 +9,7 @@
 #include "vtkPVRenderView.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkTextActor.h"
@@ -187,7 +188,7 @@ void pqHandleLabels::place()
 
 bool pqHandleLabels::press(vtkObject*, unsigned long, void*)
 {
-  if (!this->Filter || !this->Renderer)
+  if (!this->Filter || !this->Renderer || !this->isPlainPress())
   {
     return false;
   }
@@ -211,6 +212,14 @@ bool pqHandleLabels::press(vtkObject*, unsigned long, void*)
   // Later: another handle makes widgets anew, those that wait for this event too.
   QTimer::singleShot(0, this, [this, hit] { Q_EMIT this->clicked(hit); });
   return true;
+}
+
+bool pqHandleLabels::isPlainPress() const
+{
+  const int mode = vtkSMPropertyHelper(this->View->getProxy(), "InteractionMode").GetAsInt();
+  const bool moves =
+    mode == vtkPVRenderView::INTERACTION_MODE_3D || mode == vtkPVRenderView::INTERACTION_MODE_2D;
+  return moves && !this->Interactor->GetShiftKey() && !this->Interactor->GetControlKey();
 }
 
 int pqHandleLabels::active() const

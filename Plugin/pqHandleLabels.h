@@ -64,6 +64,9 @@ private:
   /// what lies under it.
   bool press(vtkObject*, unsigned long, void*);
 
+  /// Neither part of a selection in the view nor with a key that means something else.
+  bool isPlainPress() const;
+
   int active() const;
   bool isUnderMouse(const Label& label) const;
 
