@@ -128,3 +128,19 @@ TEST(TurnTableOfAFilter, RefusesNumbersThatAreNone)
   vtktest::ExpectMessage(log->Errors, { "TurnTolerance", "finite" });
   EXPECT_EQ(tabulated.Deform->GetTabulatedRange(), 0.0);
 }
+
+// Nothing turns: no table is made, and nothing moves.
+TEST(TurnTableOfAFilter, LeavesASurfaceWithoutMotions)
+{
+  Turning<vtkShapePreservingDeformation> shape(true);
+  Turning<vtkRotationInvariantDeformation> rotation(true);
+  for (vtkSurfaceDeformation* deform : { static_cast<vtkSurfaceDeformation*>(shape.Deform),
+         static_cast<vtkSurfaceDeformation*>(rotation.Deform) })
+  {
+    auto log = vtktest::Observe(deform);
+    deform->RemoveAllHandleMotions();
+    deform->Update();
+    vtktest::ExpectQuiet(*log);
+    EXPECT_EQ(Distance(vtktest::PointsOf(deform->GetOutput()), Bar.Positions), 0.0);
+  }
+}

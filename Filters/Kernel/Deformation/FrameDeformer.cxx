@@ -119,7 +119,8 @@ bool FrameDeformer::DeformByTable(
     (this->Correction == VolumeCorrection::NeutralOffset && !this->Close);
   Eigen::Vector3d axis;
   Eigen::VectorXd angles;
-  if (!(this->TableOptions.Range > 0.0) || !isLinear || !this->FindTurns(targets, axis, angles))
+  if (!(this->TableOptions.Range > 0.0) || !isLinear || targets.Motions.empty() ||
+    !this->FindTurns(targets, axis, angles))
   {
     return false;
   }
