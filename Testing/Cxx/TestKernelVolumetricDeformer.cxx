@@ -256,16 +256,22 @@ TEST(VolumetricDeformer, WeightsOfARegularTetrahedronIntegrateSquaredGradients)
 TEST(VolumetricDeformer, ResultsScaleAndDoNotDependOnThreads)
 {
   const HandleProblem problem = Bar();
-  VolumetricDeformer deformer = LatticeDeformer(problem);
   const HandleMotion bend = shapes::BendOfBar(120.0);
-  const Points result = Deform(deformer, { bend }).Positions;
-  EXPECT_TRUE(Deform(deformer, { bend }, shapes::ManyThreads(3)).Positions == result);
-  HandleProblem tiny = problem;
-  tiny.Rest = std::make_shared<const Points>(1e-9 * *problem.Rest);
-  VolumetricDeformer ofTiny = LatticeDeformer(tiny);
-  HandleMotion tinyBend = bend;
-  tinyBend.Translation *= 1e-9;
-  EXPECT_LT(Distance(1e9 * Deform(ofTiny, { tinyBend }).Positions, result), 1e-9);
+  for (const auto weights : { cartan::LaplacianWeights::Uniform,
+         cartan::LaplacianWeights::Cotangent, cartan::LaplacianWeights::MeanValue })
+  {
+    LatticeOptions options;
+    options.Weights = weights;
+    VolumetricDeformer deformer = LatticeDeformer(problem, options);
+    const Points result = Deform(deformer, { bend }).Positions;
+    EXPECT_TRUE(Deform(deformer, { bend }, shapes::ManyThreads(3)).Positions == result);
+    HandleProblem tiny = problem;
+    tiny.Rest = std::make_shared<const Points>(1e-9 * *problem.Rest);
+    VolumetricDeformer ofTiny = LatticeDeformer(tiny, options);
+    HandleMotion tinyBend = bend;
+    tinyBend.Translation *= 1e-9;
+    EXPECT_LT(Distance(1e9 * Deform(ofTiny, { tinyBend }).Positions, result), 1e-9);
+  }
 }
 
 TEST(VolumetricDeformer, RefusesWhatHasNoInsideAndLatticesThatAreTooFine)

@@ -206,6 +206,11 @@ private:
   {
     this->EdgeWeights =
       SymmetricPart(this->Mesh, cartan::EdgeWeights(this->Mesh, this->Rest, weights));
+    if (weights == LaplacianWeights::MeanValue)
+    {
+      // They have the unit 1 / length, those of the lattice have none.
+      this->EdgeWeights *= MeanEdgeLength(this->Mesh, this->Rest);
+    }
     for (int d = 0; d < this->Mesh.NumberOfDirectedEdges(); ++d)
     {
       if (this->Mesh.Origin(d) < this->Mesh.Neighbor(d))
