@@ -108,6 +108,31 @@ TEST(vtkSimilarityDeformation, ScalesTheWholeSurfaceAlong)
   }
 }
 
+// Squares of such lengths are no numbers any more.
+TEST(vtkSimilarityDeformation, ScalesOfFarMotionsAreFinite)
+{
+  vtkNew<vtkHandleMotion> motion;
+  motion->SetTranslation(1e200, -2e200, 3e200);
+  vtkNew<Filter> filter;
+  auto log = vtktest::Observe(filter);
+  auto surface = MarkedBar();
+  filter->SetInputData(surface);
+  filter->SetHandleMotion(2, motion);
+  filter->GenerateScaleFactorOn();
+  for (const int refits : { 0, 2 })
+  {
+    filter->SetRefits(refits);
+    filter->Update();
+    EXPECT_TRUE(log->Errors.empty());
+    vtkDataArray* scales = OutputArray(filter, "ScaleFactor");
+    ASSERT_NE(scales, nullptr);
+    for (vtkIdType i = 0; i < scales->GetNumberOfTuples(); ++i)
+    {
+      EXPECT_TRUE(std::isfinite(scales->GetTuple1(i))) << i;
+    }
+  }
+}
+
 TEST(vtkSimilarityDeformation, HoldsPositionsOrTransformsAlone)
 {
   auto surface = MarkedBar();

@@ -101,7 +101,8 @@ int SimilarityDeformer::GetNumberOfFactorizations() const
 
 void SimilarityDeformer::SetTransform(int vertex, const Eigen::Matrix3d& gradient)
 {
-  this->Scales[vertex] = gradient.norm() / std::sqrt(3.0);
+  // Squares of what is very far away are infinite.
+  this->Scales[vertex] = gradient.stableNorm() / std::sqrt(3.0);
   MatrixAt(this->Transforms, vertex) =
     (this->ScaleFeatures ? this->Scales[vertex] : 1.0) * ProjectOnRotations(gradient);
 }
@@ -156,12 +157,15 @@ void SimilarityDeformer::RefitTransforms(
         }
         auto transform = MatrixAt(this->Transforms, v);
         const Eigen::Matrix3d fit = MatrixAt(fitted, v);
-        const double size = transform.norm();
+        const double size = transform.stableNorm();
         // F R^-1 F: from R to the fit F and as far again.
         const Eigen::Matrix3d rotation = goesBeyond && size > 0.0
           ? Eigen::Matrix3d(std::sqrt(3.0) / size * fit * transform.transpose() * fit)
           : fit;
-        this->Scales[v] = before > 0.0 ? std::sqrt(after / before) : 1.0;
+        // Squares of what is very far away are infinite; the transform has that scale then.
+        this->Scales[v] = !std::isfinite(after) ? transform.stableNorm() / std::sqrt(3.0)
+          : before > 0.0                        ? std::sqrt(after / before)
+                                                : 1.0;
         transform = (this->ScaleFeatures ? this->Scales[v] : 1.0) * rotation;
       }
     });
@@ -244,7 +248,7 @@ void SimilarityDeformer::WarnOfSingularTransforms(const HandleTargets& targets)
   IdSample flattened;
   const auto check = [&](const Eigen::Matrix3d& transform, long long id)
   {
-    const double size = transform.norm();
+    const double size = transform.stableNorm();
     const double determinant = transform.determinant();
     if (!(std::abs(determinant) > FlatDeterminant * size * size * size))
     {
