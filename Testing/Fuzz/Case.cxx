@@ -3,8 +3,10 @@
 
 #include "Copies.h"
 #include "Defects.h"
+#include "Deformed.h"
 #include "Settings.h"
 #include "Shapes.h"
+#include "SteeringCases.h"
 
 #include <algorithm>
 #include <limits>
@@ -203,31 +205,6 @@ std::vector<HandleMotion> RandomMotions(const Mesh& mesh, Random& random)
   return motions;
 }
 
-/// A bend, a stretch and a rigid motion, which differ from call to call.
-std::vector<Eigen::Vector3d> Deformed(const std::vector<Eigen::Vector3d>& points, Random& random)
-{
-  const double size = Size(points);
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points)
-  {
-    center = point.allFinite() ? point : center;
-  }
-  const Eigen::Matrix3d frame = random.Rotation();
-  const double bend = random.Real(-3.0, 3.0);
-  const double stretch = random.Chance(0.5) ? 1.0 : random.Log(0.6, 1.7);
-  const Motion motion{ 1.0, random.Rotation(), center + size * random.Vector() };
-  std::vector<Eigen::Vector3d> deformed;
-  for (const Eigen::Vector3d& point : points)
-  {
-    const Eigen::Vector3d x = frame * (point - center) / size;
-    const double angle = bend * x.x();
-    const Eigen::Vector3d turned(stretch * x.x(), std::cos(angle) * x.y() - std::sin(angle) * x.z(),
-      std::sin(angle) * x.y() + std::cos(angle) * x.z());
-    deformed.push_back(motion(size * turned));
-  }
-  return deformed;
-}
-
 /// Most surfaces have a size near 1 and are near to the origin.
 void Place(Mesh& mesh, Random& random)
 {
@@ -246,11 +223,14 @@ void Place(Mesh& mesh, Random& random)
   }
 }
 
-/// The most points of the surfaces of a filter that looks for closest places again and
-/// again; others take what comes.
+/// The most points of the surfaces of filters that iterate or fill the inside; others take
+/// what comes.
 std::size_t MostPoints(const std::string& filter)
 {
-  return filter == "CoatingTransfer" ? 100 : 1000000;
+  static const std::map<std::string, std::size_t> most = { { "CoatingTransfer", 100 },
+    { "ExampleBasedDeformation", 200 }, { "VolumetricDeformation", 200 } };
+  const auto found = most.find(filter);
+  return found == most.end() ? 1000000 : found->second;
 }
 
 /// With `ofJoint` something hangs on a point of it.
@@ -299,7 +279,7 @@ int NumberOfOthers(const std::string& filter, Random& random)
   {
     return random.Chance(0.8) ? 1 : random.Integer(2, 4);
   }
-  if (filter == "CoatingTransfer")
+  if (filter == "CoatingTransfer" || filter == "ExampleBasedDeformation")
   {
     return random.Integer(1, 2);
   }
@@ -364,6 +344,10 @@ bool Case::NumbersAnew() const
 
 bool Case::IsDeformation() const
 {
+  if (this->Filter == "CurveDeformation")
+  {
+    return false; // it has no motions
+  }
   const std::string end = "Deformation";
   return this->Filter.size() > end.size() &&
     this->Filter.compare(this->Filter.size() - end.size(), end.size(), end) == 0;
@@ -385,6 +369,10 @@ void Move(Case& changed, const Motion& motion)
 {
   Move(changed.Surface, motion);
   for (std::vector<Eigen::Vector3d>& points : changed.Others)
+  {
+    std::transform(points.begin(), points.end(), points.begin(), motion);
+  }
+  for (std::vector<Eigen::Vector3d>& points : changed.Clouds)
   {
     std::transform(points.begin(), points.end(), points.begin(), motion);
   }
@@ -424,7 +412,10 @@ Case MakeCase(std::uint64_t seed, const std::string& filter)
   if (made.IsDeformation())
   {
     made.Motions = RandomMotions(made.Surface, random);
-    AddConstraintArrays(made.Surface, random);
+    if (made.Filter != "VolumetricDeformation")
+    {
+      AddConstraintArrays(made.Surface, random);
+    }
   }
   AddCorrespondences(made, random);
   const int others = NumberOfOthers(made.Filter, random);
@@ -437,6 +428,7 @@ Case MakeCase(std::uint64_t seed, const std::string& filter)
     }
   }
   made.Settings = RandomSettings(made.Filter, made.Surface, random);
+  AddSteering(made, random);
   return made;
 }
 }

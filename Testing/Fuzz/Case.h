@@ -22,7 +22,8 @@ struct Setting
   std::vector<double> Values;
   std::string Text; ///< of setters that take one, instead of Values
   Kind Type = Kind::Scalar;
-  double Power = 0.0; ///< of the length unit
+  double Power = 0.0;   ///< of the length unit
+  bool IsOfIds = false; ///< of points of the surface
   std::function<void(vtkAlgorithm*, const std::vector<double>&)> Apply;
 };
 
@@ -49,6 +50,8 @@ struct Case
   /// reference of a comparison, the moved points of what is restored, what is sewn on, a
   /// detailed source and its base.
   std::vector<std::vector<Eigen::Vector3d>> Others;
+  /// Points of no surface, joined by a line: landmarks, where they go, a drawn curve.
+  std::vector<std::vector<Eigen::Vector3d>> Clouds;
   std::vector<Setting> Settings;
   std::vector<HandleMotion> Motions;
 

@@ -14,13 +14,13 @@ namespace fuzz
 {
 namespace
 {
-/// Documented as NaN where there is no such number.
+/// Documented as NaN where there is no such number, or as infinite.
 bool MayBeNaN(const std::string& name)
 {
   static const std::set<std::string> names = { "AreaRatio", "EdgeLengthRatio", "LocalVolume",
     "LocalVolumeRatio", "RelativeVolumeChange", "Angle", "Reference", "Current", "RelativeChange",
-    "Stretch1", "Stretch2" };
-  return names.count(name) > 0;
+    "Stretch1", "Stretch2", "ConstraintWeight", "Weight" };
+  return names.count(name) > 0 || name.compare(0, 20, "RelativeVolumeChange") == 0;
 }
 
 /// Fields whose values depend on more than the surface, or whose sign is arbitrary.
@@ -41,8 +41,10 @@ bool IsComparable(const Field& field, const Relation& relation)
   {
     return false;
   }
-  // Anchors are numbered in the order of points where handles are.
-  if (isReordered && (field.Name.compare(0, 12, "FrameTangent") == 0 || field.Name == "Anchor"))
+  // Anchors are numbered in the order of points where handles are, components always.
+  const bool isNumbered = field.Name.find(" of component ") != std::string::npos;
+  if (isReordered &&
+    (isNumbered || field.Name.compare(0, 12, "FrameTangent") == 0 || field.Name == "Anchor"))
   {
     return false;
   }

@@ -68,6 +68,11 @@ Field Describe(const std::string& name)
     { "Center", { Kind::Point, 1 } },
     { "Coating", { Kind::Vector, 1 } },
     { "CorrespondenceDistance", { Kind::Scalar, 1 } },
+    { "SurfaceDistance", { Kind::Scalar, 1 } },
+    { "TargetPosition", { Kind::Point, 1 } },
+    { "Distance", { Kind::Scalar, 1 } },
+    { "Displacement", { Kind::Vector, 1 } },
+    { "Accuracy", { Kind::Scalar, 1 } },
   };
   Field field;
   field.Name = name;

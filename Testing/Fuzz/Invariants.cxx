@@ -5,6 +5,7 @@
 #include "LaplacianLaws.h"
 #include "Laws.h"
 #include "MergeLaws.h"
+#include "SteeringLaws.h"
 
 #include "vtkSMPTools.h"
 
@@ -29,10 +30,12 @@ bool HasPlace(const Case& of)
 }
 
 /// Tolerance and holes are measured in diagonals of the bounding box, which a rotation
-/// changes; each coordinate is rounded by itself.
+/// changes; each coordinate is rounded by itself; lattices, and the boxes of far triangles that
+/// carry as one, lie along the axes.
 bool KnowsNoBox(const Case& of)
 {
   return HasPlace(of) && of.Filter != "HighPassQuantization" &&
+    of.Filter != "VolumetricDeformation" && of.Filter != "CarryAlong" &&
     !(of.Filter == "PrepareSurface" && of.Get("ToleranceIsAbsolute", 0.0) == 0.0 &&
       of.Get("Tolerance", 0.0) > 0.0);
 }
@@ -121,8 +124,10 @@ bool IsOfDigits(const Case& of)
   static const std::set<std::string> filters = { "PrepareSurface", "RestoreSurface", "VolumeChange",
     "CurvatureError", "DiscreteForms", "FrameReconstruction", "DifferentialCoordinates",
     "LaplacianSpectrum", "LeastSquaresMesh", "HighPassQuantization", "BoundaryLoops", "MeshMerge",
-    "CoatingTransfer" };
-  return filters.count(of.Filter) > 0;
+    "CoatingTransfer", "LandmarkHandles", "VolumetricDeformation", "CarryAlong" };
+  // A ridge follows geodesic distances, whose front takes one of several ways of equal length.
+  const bool hasRidge = of.Filter == "CurveDeformation" && of.Get("RidgeHeight", 0.0) != 0.0;
+  return hasRidge || filters.count(of.Filter) > 0;
 }
 
 }
@@ -261,6 +266,7 @@ std::optional<Finding> CheckPrecision(const Case& original, const Outcome&, Rand
   rounded.Surface.IsFloat = false;
   RoundToFloat(rounded.Surface.Points);
   std::for_each(rounded.Others.begin(), rounded.Others.end(), RoundToFloat);
+  std::for_each(rounded.Clouds.begin(), rounded.Clouds.end(), RoundToFloat);
   Case single = rounded;
   single.Surface.IsFloat = true;
   return CheckChanged("precision", rounded, Run(rounded), single, {});
@@ -300,6 +306,13 @@ std::optional<Finding> CheckOrder(const Case& original, const Outcome& first, Ra
       points[static_cast<std::size_t>(relation.Order[i])] = before[i];
     }
   }
+  for (Setting& setting : changed.Settings)
+  {
+    for (double& id : setting.Values)
+    {
+      id = setting.IsOfIds ? static_cast<double>(relation.Order[static_cast<std::size_t>(id)]) : id;
+    }
+  }
   return CheckChanged("order", original, first, changed, relation);
 }
 
@@ -309,7 +322,11 @@ bool KeepsOrder(const Case& of)
 {
   const bool holdsFirst = of.Filter == "SurfaceMorph" && of.Get("Method", 0.0) <= 0.0 &&
     of.Get("FrameSolver", 0.0) >= 1.0;
-  return HasPlace(of) && !of.NumbersAnew() && !holdsFirst;
+  // Which lattice points a vertex sees may change with the order of triangles.
+  // Lengths do not determine bends, of which rounds that fit them leave some.
+  const bool isPolished = of.Filter == "SurfaceMorph" && of.Get("LengthPolish", 0.0) > 0.0;
+  return HasPlace(of) && !of.NumbersAnew() && !holdsFirst && !isPolished &&
+    of.Filter != "VolumetricDeformation";
 }
 
 std::optional<Finding> CheckHistory(const Case& original, const Outcome& first, Random& random)
@@ -328,10 +345,11 @@ std::optional<Finding> CheckHistory(const Case& original, const Outcome& first, 
   return Finding{ "history", difference + ": differ after another input", before, original, {} };
 }
 
-/// A first guess may come from the surface before.
+/// A first guess may come from the surface before, and a table from the motions before.
 bool HasNoMemory(const Case& of)
 {
-  return of.Filter != "AsRigidAsPossibleDeformation" || of.Get("InitialGuess", 3.0) != 1.0;
+  return of.Get("TabulateTurns", 0.0) == 0.0 && of.Get("WarmStart", 0.0) == 0.0 &&
+    (of.Filter != "AsRigidAsPossibleDeformation" || of.Get("InitialGuess", 3.0) != 1.0);
 }
 }
 
@@ -348,7 +366,8 @@ const std::vector<Invariant>& Invariants()
       { "order", KeepsOrder, CheckOrder },
       { "history", HasNoMemory, CheckHistory },
     };
-    for (const std::vector<Invariant>& laws : { Laws(), LaplacianLaws(), MergeLaws() })
+    for (const std::vector<Invariant>& laws :
+      { Laws(), LaplacianLaws(), MergeLaws(), SteeringLaws() })
     {
       invariants.insert(invariants.end(), laws.begin(), laws.end());
     }

@@ -55,7 +55,13 @@ void PrintSettings(std::ostream& out, const Case& of)
       List(setting.Values, static_cast<Eigen::Index>(setting.Values.size()));
     const bool isOfRegion = setting.Name.compare(0, 6, "Region") == 0 && setting.Name.size() > 6 &&
       setting.Name != "RegionSource";
-    if (isOfRegion)
+    if (setting.IsOfIds)
+    {
+      out << "    filter.SetSourceToSelectedPoints()\n    filter.SetNumberOfPointIds("
+          << setting.Values.size() << ")\n    for i, id in enumerate([" << values
+          << "]):\n        filter.SetPointId(i, int(id))\n";
+    }
+    else if (isOfRegion)
     {
       out << "    filter.SetRegion(filter.GetRegion() or vtkSphere())\n"
           << "    filter.GetRegion().Set" << setting.Name.substr(6) << "(" << values << ")\n";
@@ -131,8 +137,22 @@ void PrintInputs(std::ostream& out, const Case& of)
         << "        moved.GetPoints().SetPoint(i, surfaces[-1].GetPoint(ids.GetValue(i)))\n"
         << "    filter.SetInputData(0, moved)\n    filter.SetInputData(1, surfaces[0])\n";
   }
+  else if (of.Filter == "ExampleBasedDeformation")
+  {
+    out << "    filter.SetInputData(0, surfaces[0])\n"
+        << "    for example in surfaces[1:]:\n        filter.AddExampleData(example)\n";
+  }
   else
   {
+    for (std::size_t i = 0; i < of.Clouds.size(); ++i)
+    {
+      out << "    surfaces.append(line([";
+      for (const Eigen::Vector3d& point : of.Clouds[i])
+      {
+        out << "(" << List(point) << "), ";
+      }
+      out << "]))\n";
+    }
     out << "    for port, surface in enumerate(surfaces):\n"
         << "        filter.SetInputData(port, surface)\n";
     if (of.Surface.Find("Region"))
@@ -162,8 +182,8 @@ void PrintFunction(
   out << "    return updated(filter)\n";
 }
 
-const char* const Head = R"(from vtkmodules.vtkCommonCore import vtkSMPTools
-from vtkmodules.vtkCommonDataModel import vtkSphere
+const char* const Head = R"(from vtkmodules.vtkCommonCore import vtkPoints, vtkSMPTools
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkSphere
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from vtkcartan import *
 
@@ -172,6 +192,18 @@ def read(name):
     reader.SetFileName(name)
     reader.Update()
     return reader.GetOutput()
+
+def line(coordinates):
+    points = vtkPoints()
+    points.SetDataTypeToDouble()
+    cells = vtkCellArray()
+    cells.InsertNextCell(len(coordinates))
+    for x in coordinates:
+        cells.InsertCellPoint(points.InsertNextPoint(x))
+    data = vtkPolyData()
+    data.SetPoints(points)
+    data.SetLines(cells)
+    return data
 
 def updated(filter):
     filter.Update()

@@ -119,10 +119,27 @@ std::vector<vtkSmartPointer<vtkPolyData>> InputsOf(const Case& of)
   return inputs;
 }
 
+/// With a line through all of them.
+vtkSmartPointer<vtkPolyData> ToLine(const std::vector<Eigen::Vector3d>& points, bool isFloat)
+{
+  Mesh line;
+  line.Points = points;
+  line.IsFloat = isFloat;
+  line.Lines.emplace_back();
+  for (vtkIdType i = 0; i < line.NumberOfPoints(); ++i)
+  {
+    line.Lines[0].push_back(i);
+  }
+  return ToPolyData(line);
+}
+
 void Connect(
   vtkAlgorithm* filter, const Case& of, const std::vector<vtkSmartPointer<vtkPolyData>>& inputs)
 {
-  filter->RemoveAllInputs();
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    filter->SetInputConnection(port, nullptr);
+  }
   filter->SetInputDataObject(0, inputs[0]);
   if (of.Filter == "SurfaceMorph")
   {
@@ -143,6 +160,20 @@ void Connect(
   {
     filter->SetInputDataObject(0, PreparedAndMoved(inputs[0], of));
     filter->SetInputDataObject(1, inputs[0]);
+  }
+  else if (of.Filter == "ExampleBasedDeformation")
+  {
+    for (std::size_t i = 1; i < inputs.size(); ++i)
+    {
+      filter->AddInputDataObject(1, inputs[i]);
+    }
+  }
+  else if (!of.Clouds.empty())
+  {
+    for (std::size_t i = 0; i < of.Clouds.size(); ++i)
+    {
+      filter->SetInputDataObject(static_cast<int>(i) + 1, ToLine(of.Clouds[i], of.Surface.IsFloat));
+    }
   }
   else
   {

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Settings.h"
 
+#include "Parameters.h"
+#include "SteeringSettings.h"
+
 #include "vtkAsRigidAsPossibleDeformation.h"
 #include "vtkBoundaryLoops.h"
+#include "vtkCarryAlong.h"
 #include "vtkCoatingTransfer.h"
 #include "vtkCurvatureError.h"
+#include "vtkCurveDeformation.h"
 #include "vtkDifferentialCoordinates.h"
 #include "vtkDifferentialReconstruction.h"
 #include "vtkDiscreteForms.h"
+#include "vtkExampleBasedDeformation.h"
 #include "vtkFrameReconstruction.h"
 #include "vtkHighPassQuantization.h"
+#include "vtkLandmarkHandles.h"
 #include "vtkLaplacianDeformation.h"
 #include "vtkLaplacianSpectrum.h"
 #include "vtkLeastSquaresMesh.h"
@@ -25,6 +32,7 @@
 #include "vtkSphere.h"
 #include "vtkSurfaceMorph.h"
 #include "vtkVolumeChange.h"
+#include "vtkVolumetricDeformation.h"
 
 #include <map>
 
@@ -32,70 +40,6 @@ namespace fuzz
 {
 namespace
 {
-using Draw = std::function<std::vector<double>(Random&, const Mesh&)>;
-
-/// A setter, and how its values are drawn.
-struct Parameter
-{
-  Setting Call;
-  Draw Values;
-};
-
-template <typename Class, typename Value>
-Parameter Make(const char* name, void (Class::*set)(Value), Draw values, Kind type = Kind::Scalar,
-  double power = 0)
-{
-  Setting call;
-  call.Name = name;
-  call.Type = type;
-  call.Power = power;
-  call.Apply = [set](vtkAlgorithm* filter, const std::vector<double>& v)
-  { (static_cast<Class*>(filter)->*set)(static_cast<Value>(v[0])); };
-  return { call, std::move(values) };
-}
-
-Draw Flag()
-{
-  return [](Random& random, const Mesh&) -> std::vector<double>
-  { return { random.Chance(0.5) ? 1.0 : 0.0 }; };
-}
-
-/// In [low, high], now and then one more or less.
-Draw Integer(int low, int high)
-{
-  return [low, high](Random& random, const Mesh&) -> std::vector<double>
-  {
-    const bool isOutside = random.Chance(0.03);
-    return { static_cast<double>(
-      isOutside ? random.Pick<int>({ low - 1, high + 1, -7 }) : random.Integer(low, high)) };
-  };
-}
-
-Draw Real(double low, double high)
-{
-  return [low, high](Random& random, const Mesh&) -> std::vector<double>
-  {
-    const double margin = random.Chance(0.03) ? 0.2 * (high - low) : 0.0;
-    return { random.Real(low - margin, high + margin) };
-  };
-}
-
-/// Evenly in the logarithm.
-Draw Logarithmic(double low, double high)
-{
-  return [low, high](Random& random, const Mesh&) -> std::vector<double>
-  { return { random.Log(low, high) }; };
-}
-
-/// A part of the size of the surface.
-Draw Length(double low, double high)
-{
-  return [low, high](Random& random, const Mesh& mesh) -> std::vector<double>
-  { return { Size(mesh.Points) * random.Log(low, high) }; };
-}
-
-using Parameters = std::vector<Parameter>;
-
 Parameters DeformationParameters()
 {
   using Class = vtkSurfaceDeformation;
@@ -119,15 +63,10 @@ Parameters FrameParameters()
     Make("PositionWeights", &Class::SetPositionWeights, Integer(0, 3)),
     Make("GenerateVolumeArrays", &Class::SetGenerateVolumeArrays, Flag()),
     Make("GenerateShapeDistance", &Class::SetGenerateShapeDistance, Flag()),
+    Make("TabulateTurns", &Class::SetTabulateTurns, Flag()),
   };
   parameters.insert(parameters.end(), own.begin(), own.end());
   return parameters;
-}
-
-Parameters With(Parameters base, const Parameters& own)
-{
-  base.insert(base.end(), own.begin(), own.end());
-  return base;
 }
 
 Parameters RigidParameters()
@@ -316,19 +255,24 @@ const std::map<std::string, Entry>& Entries()
     { "AsRigidAsPossibleDeformation",
       MakeEntry<vtkAsRigidAsPossibleDeformation>(RigidParameters()) },
     { "BoundaryLoops", MakeEntry<vtkBoundaryLoops>({}) },
+    { "CarryAlong", MakeEntry<vtkCarryAlong>(CarryParameters()) },
     { "CoatingTransfer", MakeEntry<vtkCoatingTransfer>(CoatingParameters()) },
     { "CurvatureError",
       MakeEntry<vtkCurvatureError>(
         { Make("ComputeDirections", &vtkCurvatureError::SetComputeDirections, Flag()) }) },
+    { "CurveDeformation", MakeEntry<vtkCurveDeformation>(CurveParameters()) },
     { "DifferentialCoordinates", MakeEntry<vtkDifferentialCoordinates>(DifferentialParameters()) },
     { "DifferentialReconstruction",
       MakeEntry<vtkDifferentialReconstruction>(ReconstructionParameters()) },
     { "DiscreteForms", MakeEntry<vtkDiscreteForms>({}) },
+    { "ExampleBasedDeformation",
+      MakeEntry<vtkExampleBasedDeformation>(With(DeformationParameters(), ExampleParameters())) },
     { "FrameReconstruction",
       MakeEntry<Forms>({ Make("SeedPoint", &Forms::SetSeedPoint, Integer(0, 40)),
         Make("TransitionMethod", &Forms::SetTransitionMethod, Integer(0, 1)),
         Make("ProjectFrames", &Forms::SetProjectFrames, Flag()) }) },
     { "HighPassQuantization", MakeEntry<vtkHighPassQuantization>(QuantizationParameters()) },
+    { "LandmarkHandles", MakeEntry<vtkLandmarkHandles>(LandmarkParameters()) },
     { "LaplacianDeformation",
       MakeEntry<vtkLaplacianDeformation>(With(DeformationParameters(),
         { Make("Rotations", &vtkLaplacianDeformation::SetRotations, Integer(0, 2)),
@@ -355,6 +299,8 @@ const std::map<std::string, Entry>& Entries()
           Make("Tolerance", &Frames::SetTolerance, Real(0.0, 1e-3)) })) },
     { "SimilarityDeformation", MakeEntry<vtkSimilarityDeformation>(SimilarityParameters()) },
     { "SurfaceMorph", MakeEntry<vtkSurfaceMorph>(MorphParameters()) },
+    { "VolumetricDeformation",
+      MakeEntry<vtkVolumetricDeformation>(With(DeformationParameters(), VolumetricParameters())) },
     { "VolumeChange",
       MakeEntry<vtkVolumeChange>(
         { Make("ComputeLocalVolume", &vtkVolumeChange::SetComputeLocalVolume, Flag()) }) },
