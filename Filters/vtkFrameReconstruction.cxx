@@ -349,9 +349,10 @@ void vtkFrameReconstruction::Execute(cartan::FilterRun& run)
 
   const cartan::Transitions transitions = cartan::TransitionsFromForms(mesh, forms,
     static_cast<cartan::TransitionMethod>(this->TransitionMethod), context.Part(0.1, 0.2));
-  cartan::AnchoredSystem frameSystem;
-  cartan::Matrices frames = cartan::SolveFrames(mesh, transitions, constraints.IsFixed,
-    std::move(constraints.Frames), frameSystem, context.Part(0.2, 0.7));
+  const cartan::AnchoredSystem system =
+    cartan::ReconstructionSystem(mesh, constraints.IsFixed, context.Part(0.2, 0.4));
+  cartan::Matrices frames = cartan::ReconstructFrames(mesh, transitions, constraints.IsFixed,
+    std::move(constraints.Frames), system, context.Part(0.4, 0.8));
   if (this->ProjectFrames)
   {
     for (int v = 0; v < mesh.NumberOfVertices(); ++v)
@@ -361,7 +362,7 @@ void vtkFrameReconstruction::Execute(cartan::FilterRun& run)
   }
   const cartan::Points positions =
     cartan::SolvePositions(mesh, frames, cartan::RingCoordinates(mesh, forms), constraints.IsFixed,
-      std::move(constraints.Positions), context.Part(0.7, 0.95));
+      std::move(constraints.Positions), system, context.Part(0.8, 0.95));
   run.Warn(cartan::DescribePartedCopies(
     input, *surface, positions, "hold one copy of each in every part with a constraint array."));
   cartan::WriteReconstruction(*surface, positions, input, run.Output(), context);

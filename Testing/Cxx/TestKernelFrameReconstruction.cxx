@@ -89,11 +89,11 @@ Reconstruction Reconstruct(const TriangleMesh& mesh, const DiscreteForms& forms,
   MatrixAt(frames, seed) = frame;
   Points positions = Points::Zero(mesh.NumberOfVertices(), 3);
   positions.row(seed) = position.transpose();
-  cartan::AnchoredSystem frameSystem;
-  frames = cartan::SolveFrames(
-    mesh, cartan::TransitionsFromForms(mesh, forms, method), isFixed, frames, frameSystem);
-  positions =
-    cartan::SolvePositions(mesh, frames, cartan::RingCoordinates(mesh, forms), isFixed, positions);
+  const cartan::AnchoredSystem system = cartan::ReconstructionSystem(mesh, isFixed);
+  frames = cartan::ReconstructFrames(
+    mesh, cartan::TransitionsFromForms(mesh, forms, method), isFixed, frames, system);
+  positions = cartan::SolvePositions(
+    mesh, frames, cartan::RingCoordinates(mesh, forms), isFixed, positions, system);
   return { frames, positions };
 }
 
@@ -112,8 +112,8 @@ double ReconstructionError(const Shape& shape, TransitionMethod method, double s
     cartan::BoundingDiagonal(shape.Positions);
 }
 
-/// Transitions that fit together nowhere.
-Matrices NoisyTransitions(const TriangleMesh& mesh, const Points& points)
+/// Transitions that fit together nowhere, turned by up to `angle` about each axis.
+Matrices NoisyTransitions(const TriangleMesh& mesh, const Points& points, double angle = 0.3)
 {
   Matrices transitions = cartan::TransitionsFromFrames(mesh, cartan::VertexFrames(mesh, points));
   shapes::Random random(6);
@@ -121,7 +121,7 @@ Matrices NoisyTransitions(const TriangleMesh& mesh, const Points& points)
   {
     const Vector3d turn{ random(), random(), random() };
     MatrixAt(transitions, d) =
-      (MatrixAt(transitions, d) * cartan::RotationFromVector(0.3 * turn)).eval();
+      (MatrixAt(transitions, d) * cartan::RotationFromVector(angle * turn)).eval();
   }
   return transitions;
 }
@@ -218,6 +218,30 @@ TEST(SolveFrames, IsTheLeastSquaresSolutionOfInconsistentEquations)
   }
 }
 
+TEST(ReconstructFrames, SolvesTheSameSystemByStepsOrAFactorization)
+{
+  // Ones that fit together, nearly, hardly, and not at all.
+  const Shape shape = shapes::RealMesh("elephant");
+  const TriangleMesh mesh = MakeMesh(shape);
+  std::vector<char> isFixed(mesh.NumberOfVertices(), 0);
+  isFixed[0] = isFixed[1200] = 1;
+  const Matrices frames = cartan::VertexFrames(mesh, shape.Positions);
+  Matrices given = Matrices::Zero(mesh.NumberOfVertices(), 9);
+  for (const int v : { 0, 1200 })
+  {
+    MatrixAt(given, v) = shapes::RandomRigidMotion(1).Rotation * MatrixAt(frames, v);
+  }
+  const cartan::AnchoredSystem laplacian = cartan::ReconstructionSystem(mesh, isFixed);
+  for (const double angle : { 0.0, 1e-4, 1e-3, 0.01, 0.3, 3.0 })
+  {
+    const Matrices transitions = NoisyTransitions(mesh, shape.Positions, angle);
+    cartan::AnchoredSystem system;
+    const Matrices expected = cartan::SolveFrames(mesh, transitions, isFixed, given, system);
+    const Matrices solved = cartan::ReconstructFrames(mesh, transitions, isFixed, given, laplacian);
+    EXPECT_LT((solved - expected).cwiseAbs().maxCoeff(), 1e-8) << angle;
+  }
+}
+
 TEST(SolvePositions, IsTheLeastSquaresSolutionOfEq5)
 {
   // Frames and edges that do not belong together.
@@ -230,7 +254,8 @@ TEST(SolvePositions, IsTheLeastSquaresSolutionOfEq5)
     Points::NullaryExpr(mesh.NumberOfDirectedEdges(), 3, [&random]() { return random(); });
   std::vector<char> isFixed(mesh.NumberOfVertices(), 0);
   isFixed[3] = isFixed[20] = 1;
-  const Points result = cartan::SolvePositions(mesh, frames, ring, isFixed, shape.Positions);
+  const Points result = cartan::SolvePositions(
+    mesh, frames, ring, isFixed, shape.Positions, cartan::ReconstructionSystem(mesh, isFixed));
 
   Eigen::MatrixXd equations =
     Eigen::MatrixXd::Zero(mesh.NumberOfDirectedEdges(), mesh.NumberOfVertices());
@@ -354,8 +379,8 @@ TEST(Reconstruction, LeavesUnusedVerticesAlone)
   const DiscreteForms forms = cartan::ComputeDiscreteForms(mesh, shape.Positions, frames);
   std::vector<char> isFixed(44, 0);
   isFixed[0] = 1;
-  const Points result = cartan::SolvePositions(
-    mesh, frames, cartan::RingCoordinates(mesh, forms), isFixed, shape.Positions);
+  const Points result = cartan::SolvePositions(mesh, frames, cartan::RingCoordinates(mesh, forms),
+    isFixed, shape.Positions, cartan::ReconstructionSystem(mesh, isFixed));
   EXPECT_EQ(result.bottomRows(2), shape.Positions.bottomRows(2));
   EXPECT_LT((result - shape.Positions).norm(), 1e-13);
 }

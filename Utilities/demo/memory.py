@@ -4,7 +4,8 @@ what it keeps from one update to the next, and what its first update takes at it
 its input. The table of Documentation/Memory.md.
 
 Run it with pvpython and the variables of the tests, CARTAN_MESH_DIR and PYTHONPATH; memory.py 2
-subdivides twice: 416,002 points. Linux only: peaks come from /proc.
+subdivides twice: 416,002 points; memory.py 2 Morph is for filters with such a name only. Linux
+only: peaks come from /proc.
 """
 import ctypes
 import os
@@ -54,17 +55,17 @@ def connected(kind, *connections, **properties):
     return filter
 
 
-def bending(kind, marked):
+def bending(kind, marked, **properties):
     motion = vtkcartan.vtkHandleMotion()
     motion.SetAxis(1, 0, 0)
     motion.SetAngle(20)
-    filter = connected(kind + "Deformation", marked)
+    filter = connected(kind + "Deformation", marked, **properties)
     filter.SetHandleMotion(2, motion)
     return filter
 
 
-def morph(method, marked, bent):
-    filter = connected("SurfaceMorph", marked, Parameter=0.5)
+def morph(method, marked, bent, **properties):
+    filter = connected("SurfaceMorph", marked, Parameter=0.5, **properties)
     getattr(filter, "SetMethodTo" + method)()
     filter.AddInputConnection(bent.GetOutputPort())
     return filter
@@ -104,6 +105,12 @@ def cases(marked, forms, bent):
     yield "vtkCoatingTransfer", lambda: connected("CoatingTransfer", marked, marked)
     for method in ("DiscreteForms", "Isometric", "DeformationGradient", "Linear"):
         yield "vtkSurfaceMorph, " + method, lambda method=method: morph(method, marked, bent)
+    yield "vtkSurfaceMorph, Direct", lambda: morph(
+        "DiscreteForms", marked, bent, FrameSolver=vtkcartan.vtkSurfaceMorph.DIRECT)
+    yield "vtkSurfaceMorph, Isometric, polish", lambda: morph(
+        "Isometric", marked, bent, LengthPolish=3)
+    yield "vtkLaplacianDeformation, Implicit", lambda: bending(
+        "Laplacian", marked, Rotations=vtkcartan.vtkLaplacianDeformation.IMPLICIT)
 
 
 def main():
@@ -133,7 +140,8 @@ def main():
               f"{(resident('VmHWM') - before) / points:8.0f}")
 
     for name, make in cases(marked, forms, bent):
-        in_process(lambda: measure(name, make))
+        if len(sys.argv) < 3 or sys.argv[2] in name:
+            in_process(lambda: measure(name, make))
 
 
 main()

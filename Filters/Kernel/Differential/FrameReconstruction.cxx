@@ -2,6 +2,7 @@
 #include "Differential/FrameReconstruction.h"
 
 #include "Algebra/ConjugateGradients.h"
+#include "Algebra/Rotation.h"
 #include "Algebra/SparseProduct.h"
 #include "Differential/Laplacian.h"
 
@@ -86,6 +87,46 @@ private:
   Matrices Turned;
   Matrices Solved; ///< zero where frames are given
 };
+
+/// Sets frames from those of `isFixed` on, vertex by vertex: F_j = F_i C_ij. Returns the
+/// largest |F_i C_ij - F_j|; infinity where a used vertex is reached over zeros only.
+double CarryFrames(const TriangleMesh& mesh, const Transitions& transitions,
+  const std::vector<char>& isFixed, Matrices& frames)
+{
+  std::vector<char> isKnown = FixUnused(mesh, isFixed);
+  std::vector<int> order;
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (isFixed[v])
+    {
+      order.push_back(v);
+    }
+  }
+  double misfit = 0.0;
+  for (std::size_t next = 0; next < order.size(); ++next)
+  {
+    const int i = order[next];
+    for (int d = mesh.RingBegin(i); d < mesh.RingEnd(i); ++d)
+    {
+      const int j = mesh.Neighbor(d);
+      if (MatrixAt(transitions, d).isZero(0.0))
+      {
+        continue;
+      }
+      const Eigen::Matrix3d carried = MatrixAt(frames, i) * MatrixAt(transitions, d);
+      if (!isKnown[j])
+      {
+        MatrixAt(frames, j) = ProjectOnRotations(carried);
+        isKnown[j] = 1;
+        order.push_back(j);
+      }
+      misfit = std::max(misfit, (carried - MatrixAt(frames, j)).norm());
+    }
+  }
+  const bool isWhole =
+    std::all_of(isKnown.begin(), isKnown.end(), [](char known) { return known != 0; });
+  return isWhole ? misfit : std::numeric_limits<double>::infinity();
+}
 
 /// That of a directed edge, 1 where none are given.
 double WeightOf(const Eigen::VectorXd& weights, int d)
@@ -196,6 +237,43 @@ Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transition
   return start;
 }
 
+Matrices ReconstructFrames(const TriangleMesh& mesh, const Transitions& transitions,
+  const std::vector<char>& isFixed, Matrices frames, const AnchoredSystem& laplacian,
+  const ExecutionContext& context)
+{
+  // Forms of a surface take a step or two. With carried frames that miss each other by
+  // more than this the steps take longer than a factorization, as 40 always do.
+  constexpr double largestMisfit = 0.03;
+  constexpr int maximumSteps = 40;
+  Matrices start = frames;
+  if (CarryFrames(mesh, transitions, isFixed, start) <= largestMisfit)
+  {
+    try
+    {
+      return SolveFramesFrom(mesh, transitions, isFixed, std::move(start), laplacian, nullptr,
+        context.Part(0.0, 0.5), {}, maximumSteps);
+    }
+    catch (const Error& error)
+    {
+      if (error.GetCode() != ErrorCode::NotConverged)
+      {
+        throw;
+      }
+    }
+  }
+  AnchoredSystem system;
+  return SolveFrames(mesh, transitions, isFixed, std::move(frames), system, context.Part(0.5, 1.0));
+}
+
+AnchoredSystem ReconstructionSystem(
+  const TriangleMesh& mesh, const std::vector<char>& isFixed, const ExecutionContext& context)
+{
+  AnchoredSystem system;
+  system.Factorize(Laplacian(mesh, Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges())),
+    Anchors::Hard(FixUnused(mesh, isFixed)), context);
+  return system;
+}
+
 Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
   const ExecutionContext& context, const Eigen::VectorXd& weights)
 {
@@ -221,13 +299,10 @@ Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, co
 }
 
 Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
-  const std::vector<char>& isFixed, Points positions, const ExecutionContext& context)
+  const std::vector<char>& isFixed, Points positions, const AnchoredSystem& system,
+  const ExecutionContext& context)
 {
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges());
   const std::vector<char> isGiven = FixUnused(mesh, isFixed);
-  AnchoredSystem system;
-  system.Factorize(Laplacian(mesh, ones), Anchors::Hard(isGiven), context);
-
   // Relative to a fixed position of each component, so that a seed far from the
   // origin costs no digits.
   std::vector<int> references(mesh.NumberOfComponents(), -1);

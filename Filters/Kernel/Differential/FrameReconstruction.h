@@ -39,6 +39,20 @@ Matrices SolveFramesFrom(const TriangleMesh& mesh, const Transitions& transition
   int* steps = nullptr, const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {},
   int maximumSteps = 1000);
 
+/// The frames of SolveFrames, where transitions nearly fit together in less than half of
+/// its memory: by SolveFramesFrom, from frames that are carried along the edges from the
+/// nearest one that is given. Else, where that would take more time, by SolveFrames.
+/// `laplacian` is the ReconstructionSystem.
+Matrices ReconstructFrames(const TriangleMesh& mesh, const Transitions& transitions,
+  const std::vector<char>& isFixed, Matrices frames, const AnchoredSystem& laplacian,
+  const ExecutionContext& context = {});
+
+/// The system of ReconstructFrames and SolvePositions: the graph Laplacian with the
+/// vertices of `isFixed` and the unused ones fixed. Throws Error(SingularSystem) for a
+/// component without a fixed vertex.
+AnchoredSystem ReconstructionSystem(
+  const TriangleMesh& mesh, const std::vector<char>& isFixed, const ExecutionContext& context = {});
+
 /// b of the normal equations L x = b that SolvePositions solves, with the graph
 /// Laplacian L: #V x 3.
 Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
@@ -46,9 +60,9 @@ Field PositionRightHandSide(const TriangleMesh& mesh, const Matrices& frames, co
 
 /// The positions that fit x_j - x_i = F_i c_ij (Eq. 5) best over all directed
 /// edges, with those given where `isFixed` is non-zero: #V x 3. `ring` are the
-/// edges in the frames of their origins (RingCoordinates). Throws
-/// Error(SingularSystem) for a component without a fixed position. Unused
-/// vertices keep what `positions` has.
+/// edges in the frames of their origins (RingCoordinates), `system` the
+/// ReconstructionSystem. Unused vertices keep what `positions` has.
 Points SolvePositions(const TriangleMesh& mesh, const Matrices& frames, const Points& ring,
-  const std::vector<char>& isFixed, Points positions, const ExecutionContext& context = {});
+  const std::vector<char>& isFixed, Points positions, const AnchoredSystem& system,
+  const ExecutionContext& context = {});
 }
