@@ -6,6 +6,7 @@
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/LinearMorph.h"
+#include "Kernel/Morph/PyramidCoordinatesMorph.h"
 #include "Kernel/Morph/TriangleGradientMorph.h"
 
 #include "vtkCompositeDataSet.h"
@@ -407,6 +408,8 @@ std::unique_ptr<cartan::SurfaceMorph> vtkSurfaceMorph::NewMorph(
     }
     case DEFORMATION_GRADIENT:
       return std::make_unique<cartan::TriangleGradientMorph>(keys, context);
+    case PYRAMID_COORDINATES:
+      return std::make_unique<cartan::PyramidCoordinatesMorph>(keys, context);
     default:
       return std::make_unique<cartan::LinearMorph>(keys);
   }

@@ -233,7 +233,8 @@ def parser():
     one.add_argument("--parameter", type=float, default=0.5,
                      help="0 is the first surface, 1 the last; default: %(default)s")
     one.add_argument("--method", default="DiscreteForms",
-                     help="DiscreteForms, Isometric, DeformationGradient, Linear")
+                     help="DiscreteForms, Isometric, DeformationGradient, PyramidCoordinates, "
+                          "Linear")
     one.set_defaults(run=morph)
 
     one = commands.add_parser("measure", help="compare with a reference")

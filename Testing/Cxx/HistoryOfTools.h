@@ -83,7 +83,7 @@ inline Subject Morph()
   using Filter = vtkSurfaceMorph;
   return Make<Filter>("SurfaceMorph",
     { KeyFrames(), Number<Filter>(&Filter::SetParameter, { 0.0, 0.25, 0.4, 0.75, 1.0, 1.1 }),
-      Enumeration<Filter>(4, &Filter::SetMethod), Enumeration<Filter>(2, &Filter::SetPlacement),
+      Enumeration<Filter>(5, &Filter::SetMethod), Enumeration<Filter>(2, &Filter::SetPlacement),
       Switch<Filter>(&Filter::SetCloseVolume), Enumeration<Filter>(3, &Filter::SetStitching),
       Enumeration<Filter>(3, &Filter::SetFrameSolver),
       Enumeration<Filter>(2, &Filter::SetTransitionInterpolation),

@@ -2,6 +2,7 @@
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/MorphVolume.h"
+#include "Kernel/Morph/PyramidCoordinatesMorph.h"
 #include "Kernel/Morph/RigidPlacement.h"
 #include "Kernel/Morph/TriangleGradientMorph.h"
 #include "MorphShapes.h"
@@ -72,6 +73,9 @@ std::vector<std::pair<std::string, Make>> Methods()
   return { { "Rotations", forms(Transitions::Rotations) }, { "Forms", forms(Transitions::Forms) },
     { "Gradient",
       [](const KeyFrames& keys) { return std::make_unique<cartan::TriangleGradientMorph>(keys); } },
+    { "Pyramid",
+      [](const KeyFrames& keys)
+      { return std::make_unique<cartan::PyramidCoordinatesMorph>(keys); } },
     { "Isometric", isometric(IsometricMorphOptions::Method::Automatic) },
     { "TreeStitched", isometric(IsometricMorphOptions::Method::TreeStitched) } };
 }

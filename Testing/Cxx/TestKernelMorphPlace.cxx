@@ -6,6 +6,7 @@
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/LinearMorph.h"
+#include "Kernel/Morph/PyramidCoordinatesMorph.h"
 #include "Kernel/Morph/RigidPlacement.h"
 #include "Kernel/Morph/TriangleGradientMorph.h"
 
@@ -32,6 +33,9 @@ const std::vector<std::pair<std::string, MakeMorph>>& Methods()
       [](const KeyFrames& keys) { return std::make_unique<cartan::IsometricMorph>(keys); } },
     { "gradient",
       [](const KeyFrames& keys) { return std::make_unique<cartan::TriangleGradientMorph>(keys); } },
+    { "pyramid",
+      [](const KeyFrames& keys)
+      { return std::make_unique<cartan::PyramidCoordinatesMorph>(keys); } },
     { "linear", [](const KeyFrames& keys) { return std::make_unique<cartan::LinearMorph>(keys); } }
   };
   return methods;

@@ -6,6 +6,7 @@
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/LinearMorph.h"
+#include "Kernel/Morph/PyramidCoordinatesMorph.h"
 #include "Kernel/Morph/TriangleGradientMorph.h"
 #include "MorphShapes.h"
 #include "TestShapes.h"
@@ -145,6 +146,8 @@ TEST(Progress, OfMorphsNeverRunsBack)
   { return std::make_unique<cartan::LinearMorph>(keys); };
   makers["TriangleGradient"] = [&](const ExecutionContext& context)
   { return std::make_unique<cartan::TriangleGradientMorph>(keys, context); };
+  makers["Pyramid"] = [&](const ExecutionContext& context)
+  { return std::make_unique<cartan::PyramidCoordinatesMorph>(keys, context); };
   for (const auto transitions : { Forms::Transitions::Rotations, Forms::Transitions::Forms })
   {
     for (const auto solver : { Forms::FrameSolver::RotationAveraging,

@@ -6,6 +6,7 @@
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/MorphVolume.h"
+#include "Kernel/Morph/PyramidCoordinatesMorph.h"
 #include "Kernel/Morph/RigidPlacement.h"
 #include "Kernel/Morph/TriangleGradientMorph.h"
 #include "MorphShapes.h"
@@ -60,6 +61,9 @@ std::vector<Method> Methods()
       [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
       { return std::make_unique<TriangleGradientMorph>(keys); },
       false },
+    { "pyramid coordinates",
+      [](const KeyFrames& keys) -> std::unique_ptr<SurfaceMorph>
+      { return std::make_unique<cartan::PyramidCoordinatesMorph>(keys); } },
   };
 }
 

@@ -99,7 +99,7 @@ TEST(VtkSurfaceMorph, KeepsEdgesWhereLinearInterpolationShrinks)
   const auto keys =
     morphshapes::Keys(fixture.Bar, { PointsOf(fixture.Keys[0]), PointsOf(fixture.Keys[1]) });
   for (const int method : { vtkSurfaceMorph::DISCRETE_FORMS, vtkSurfaceMorph::ISOMETRIC,
-         vtkSurfaceMorph::DEFORMATION_GRADIENT })
+         vtkSurfaceMorph::DEFORMATION_GRADIENT, vtkSurfaceMorph::PYRAMID_COORDINATES })
   {
     fixture.Filter->SetMethod(method);
     const auto figures = morphshapes::MeasureMorph(keys, fixture.At(0.5), 0.5);

@@ -35,7 +35,7 @@ for parameter, surface in ((0, output(bar)), (1, output(bent))):
     morph.Parameter = parameter
     check((points(output(morph)) == points(surface)).all(), "key frame at %s" % parameter)
 morph.Parameter = 0.5
-for method in ("Discrete Forms", "Isometric", "Deformation Gradient"):
+for method in ("Discrete Forms", "Isometric", "Deformation Gradient", "Pyramid Coordinates"):
     morph.Method = method
     check_close(length(output(morph)), (straight + curved) / 2, method, 0.02)
 morph.Method = "Linear"

@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 import cartan_testing
 
-METHODS = ("DiscreteForms", "Isometric", "DeformationGradient", "Linear")
+METHODS = ("DiscreteForms", "Isometric", "DeformationGradient", "PyramidCoordinates", "Linear")
 
 
 def points_of(surface):
