@@ -117,11 +117,25 @@ double BoundingDiagonal(const Points& points)
 
 double BoundingDiagonal(const Points& points, const Triangles& triangles)
 {
-  Eigen::AlignedBox3d box;
+  if (triangles.rows() == 0)
+  {
+    return 0.0;
+  }
+  // Numbers of their own, which stay in registers: a box of Eigen's goes through memory.
+  const Eigen::Vector3d first = points.row(triangles(0, 0));
+  double lowX = first.x(), highX = first.x();
+  double lowY = first.y(), highY = first.y();
+  double lowZ = first.z(), highZ = first.z();
   for (Eigen::Index corner = 0; corner < triangles.size(); ++corner)
   {
-    box.extend(points.row(triangles.data()[corner]).transpose());
+    const double* point = points.data() + 3 * Eigen::Index(triangles.data()[corner]);
+    lowX = std::min(lowX, point[0]);
+    highX = std::max(highX, point[0]);
+    lowY = std::min(lowY, point[1]);
+    highY = std::max(highY, point[1]);
+    lowZ = std::min(lowZ, point[2]);
+    highZ = std::max(highZ, point[2]);
   }
-  return box.diagonal().norm();
+  return Eigen::Vector3d(highX - lowX, highY - lowY, highZ - lowZ).norm();
 }
 }
