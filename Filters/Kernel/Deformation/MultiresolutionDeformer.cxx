@@ -13,24 +13,31 @@ namespace cartan
 {
 namespace
 {
+/// The direction of the sum of a ring's area vectors, or zero where that is rounding beside
+/// the squared lengths of its edges.
+Eigen::Vector3d NormalOf(const Eigen::Vector3d& areaVector, double squaredEdges)
+{
+  const double length = areaVector.norm();
+  return length > 1e-12 * squaredEdges ? Eigen::Vector3d(areaVector / length)
+                                       : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
 /// The unit normal of one vertex, as VertexNormals has it.
 Eigen::Vector3d RingNormal(const TriangleMesh& mesh, const Points& points, int v)
 {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double size = 0.0;
+  double squaredEdges = 0.0;
   for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
   {
+    const Eigen::Vector3d edge = points.row(mesh.Neighbor(d)) - points.row(v);
+    squaredEdges += edge.squaredNorm();
     if (mesh.LeftTriangle(d) >= 0)
     {
-      const Eigen::Vector3d edge = points.row(mesh.Neighbor(d)) - points.row(v);
       const Eigen::Vector3d next = points.row(mesh.Opposite(d)) - points.row(v);
-      const Eigen::Vector3d areaVector = edge.cross(next);
-      sum += areaVector;
-      size += areaVector.norm();
+      sum += edge.cross(next);
     }
   }
-  return sum.norm() > 1e-12 * size ? Eigen::Vector3d(sum.normalized())
-                                   : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  return NormalOf(sum, squaredEdges);
 }
 
 /// The radius of a one-ring across its narrower direction: in a round ring, where
@@ -44,7 +51,8 @@ double RingRadius(const TriangleMesh& mesh, const Points& points, int v)
     covariance += edge.transpose() * edge;
   }
   const int valence = mesh.RingEnd(v) - mesh.RingBegin(v);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spectrum(covariance, Eigen::EigenvaluesOnly);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spectrum;
+  spectrum.computeDirect(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(2.0 * std::max(0.0, spectrum.eigenvalues()[1]) / std::max(1, valence));
 }
 
@@ -52,27 +60,36 @@ double RingRadius(const TriangleMesh& mesh, const Points& points, int v)
 /// identity; exactly zero where the displacements are all the same. `normal` is that
 /// of the reference.
 Eigen::Matrix3d FitChange(const TriangleMesh& mesh, const Points& reference,
-  const Eigen::RowVector3d& normal, const Points& current, const Points& displacements, int v)
+  const Eigen::RowVector3d& normal, const Points& displacements, int v)
 {
+  const auto edge = [&](const Points& points, int w) -> Eigen::Vector3d
+  { return points.row(w) - points.row(v); };
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d areaVector = Eigen::Vector3d::Zero();
   double size = 0.0;
+  double squaredEdges = 0.0;
   bool isStill = true;
   for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
   {
-    const int w = mesh.Neighbor(d);
-    const Eigen::RowVector3d before = reference.row(w) - reference.row(v);
-    const Eigen::RowVector3d change = displacements.row(w) - displacements.row(v);
-    const Eigen::RowVector3d after = before + change;
-    covariance += after.transpose() * before;
+    const Eigen::Vector3d before = edge(reference, mesh.Neighbor(d));
+    const Eigen::Vector3d change = edge(displacements, mesh.Neighbor(d));
+    const Eigen::Vector3d after = before + change;
+    covariance += after * before.transpose();
     size += std::sqrt(before.squaredNorm() * after.squaredNorm());
+    squaredEdges += after.squaredNorm();
     isStill = isStill && change.isZero(0.0);
+    if (mesh.LeftTriangle(d) >= 0)
+    {
+      const int next = mesh.Opposite(d);
+      areaVector += after.cross(edge(reference, next) + edge(displacements, next));
+    }
   }
   if (isStill || !(size > 0.0))
   {
     return Eigen::Matrix3d::Zero();
   }
   // The edges of a flat ring leave the rotation to rounding; the normal settles it.
-  covariance += size * RingNormal(mesh, current, v) * normal;
+  covariance += size * NormalOf(areaVector, squaredEdges) * normal;
   return ProjectOnRotations(covariance / size) - Eigen::Matrix3d::Identity();
 }
 }
@@ -149,7 +166,7 @@ void MultiresolutionDeformer::PrepareSpreading(const ExecutionContext& context)
 
 /// The base's local frame turns as its one-ring and normal do.
 void MultiresolutionDeformer::FitFrames(
-  const Points& base, const Points& displacements, const ExecutionContext& context)
+  const Points& displacements, const ExecutionContext& context)
 {
   const int numberOfFrames = static_cast<int>(this->RestNormals.rows());
   const std::vector<int>& vertices = this->System.GetVertices();
@@ -160,7 +177,7 @@ void MultiresolutionDeformer::FitFrames(
       for (int i = begin; i < end; ++i)
       {
         MatrixAt(this->Changes, i) = FitChange(*this->Problem.Mesh, this->RestBase,
-          this->RestNormals.row(i), base, displacements, vertices[i]);
+          this->RestNormals.row(i), displacements, vertices[i]);
       }
     });
   if (this->NumberOfSpread == 0)
@@ -187,13 +204,13 @@ void MultiresolutionDeformer::DeformRelative(const HandleTargets& targets, bool 
   result.FrameScale.setOnes(rest.rows());
   Points displacements = result.Positions - rest;
   this->System.Solve(this->Zero, displacements);
-  const Points base = this->RestBase + displacements;
   context.Report(0.5);
   if (wantTransforms)
   {
+    const Points base = this->RestBase + displacements;
     result.Transforms = FitRotations(*this->Problem.Mesh, this->RestBase, base, context);
   }
-  this->FitFrames(base, displacements, context);
+  this->FitFrames(displacements, context);
   const std::vector<int>& vertices = this->System.GetVertices();
   for (int i = 0; i < this->System.NumberOfUnknowns(); ++i)
   {

@@ -52,7 +52,7 @@ protected:
 
 private:
   void PrepareSpreading(const ExecutionContext& context);
-  void FitFrames(const Points& base, const Points& displacements, const ExecutionContext& context);
+  void FitFrames(const Points& displacements, const ExecutionContext& context);
 
   PolyharmonicSystem System;
   AnchoredSystem Spreading; ///< of frames; not factorized where none is spread
