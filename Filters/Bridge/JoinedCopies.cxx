@@ -66,6 +66,10 @@ std::string DescribePartedCopies(
   vtkPolyData* input, const Surface& surface, const Points& positions, const std::string& advice)
 {
   const std::vector<int> joinedWith = HoldCopies(input, surface).JoinedWith;
+  if (joinedWith.empty())
+  {
+    return {};
+  }
   const double size = BoundingDiagonal(positions, surface.Mesh->GetTriangles());
   IdSample parted;
   for (std::size_t v = 0; v < joinedWith.size(); ++v)

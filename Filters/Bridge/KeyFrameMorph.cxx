@@ -33,6 +33,14 @@ struct PreparedMorph
   std::unique_ptr<SurfaceMorph> Morph;
   std::unique_ptr<MorphVolume> Volume; ///< once it is needed
 
+  /// A key frame as long as this is kept: its positions are lent, not copied.
+  Surface SurfaceAt(std::size_t key) const
+  {
+    Surface surface = this->First;
+    surface.Positions = { std::shared_ptr<const Points>(), &this->Keys.Positions[key] };
+    return surface;
+  }
+
   std::size_t GetBytes() const
   {
     const std::size_t positions =
@@ -104,8 +112,7 @@ Points PositionsAt(const MorphPlace& at, vtkPolyData* first, const MorphOptions&
     run.Warn(prepared.Volume->GetWarning());
     run.Warn(prepared.Volume->Close(at.GetParameter(), positions));
   }
-  Surface surface = prepared.First;
-  surface.Positions = std::make_shared<const Points>(prepared.Keys.Positions.front());
+  const Surface surface = prepared.SurfaceAt(0);
   run.Warn(DescribePartedCopies(first, surface, positions,
     "choose Method Linear, which keeps them together, or one of the deformations."));
   return positions;
@@ -120,8 +127,7 @@ void WriteBetween(const std::vector<vtkPolyData*>& keys, const KeyPlace& place,
   const std::size_t nearest = place.Before + (place.Part < 0.5 ? 0 : 1);
   const bool isLikeFirst = KeyOfCells(keys[nearest]) == KeyOfCells(keys[0]);
   const std::size_t model = isLikeFirst ? nearest : 0;
-  Surface surface = prepared.First;
-  surface.Positions = std::make_shared<const Points>(prepared.Keys.Positions[model]);
+  const Surface surface = prepared.SurfaceAt(model);
   run.Warn(WriteSurface(surface, positions, keys[model], run.Output(), run.Context()));
   for (int v = 0; v < surface.Mesh->NumberOfVertices(); ++v)
   {
@@ -151,9 +157,8 @@ MorphPlace ReadLocalPlace(vtkPolyData* first, const std::string& name)
   {
     throw Error(ErrorCode::BadInput,
       "The point array \"" + name + "\" has " + bad.Describe("value", "values") +
-        " that are NaN or infinite: give each point a parameter, from 0 at the first key frame to "
-        "1 "
-        "at the last.");
+        " that are NaN or infinite: give each point a parameter, from 0 at the first key "
+        "frame to 1 at the last.");
   }
   const double mean = parameters.mean();
   // One parameter everywhere is no local place, and a key frame can be met to the last bit.
