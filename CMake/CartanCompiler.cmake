@@ -35,6 +35,34 @@ if (CARTAN_WARNINGS_AS_ERRORS)
   list(APPEND CARTAN_WARNING_FLAGS -Werror)
 endif ()
 
+# Most of the time goes into the same templates of Eigen, file by file. It is for builds
+# that are made whole: a change compiles all that is in one unit with it again, and a missing
+# include does not show.
+option(CARTAN_COMPILE_TOGETHER "Compile some eight source files as one" OFF)
+
+# cartan_compile_together(target groups files...)
+#
+# Puts the sources of a target into so many units, if that is asked for, but for these files,
+# whose own names are those of others. The unit follows from a file's name alone, so that a new
+# file does not shuffle the others.
+function (cartan_compile_together target groups)
+  if (NOT CARTAN_COMPILE_TOGETHER)
+    return ()
+  endif ()
+  get_target_property(sources "${target}" SOURCES)
+  foreach (source IN LISTS sources)
+    get_filename_component(name "${source}" NAME)
+    if (name IN_LIST ARGN)
+      continue ()
+    endif ()
+    string(MD5 hash "${name}")
+    string(SUBSTRING "${hash}" 0 4 hash)
+    math(EXPR group "0x${hash} % ${groups}")
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${group}")
+  endforeach ()
+  set_target_properties("${target}" PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction ()
+
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")

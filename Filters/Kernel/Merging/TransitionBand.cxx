@@ -24,7 +24,7 @@ constexpr double SmallestRadius = 1e-9;
 constexpr double SmallestWeight = 1e-6;
 
 /// Angles, in turns, and areas, in parts of a triangle's extents, are known no better.
-constexpr double RoundingPart = 1e-12;
+constexpr double Imprecision = 1e-12;
 
 [[noreturn]] void ThrowTooWide(int vertex, double width, const std::string& role)
 {
@@ -161,7 +161,7 @@ SparseMatrix BandLaplacian(const Points& points, const Triangles& faces,
       const Eigen::Vector3d b = (points.row(to) - points.row(faces(f, c))).transpose();
       const double sine = a.cross(b).norm();
       weights[std::minmax(numbers[from], numbers[to])] +=
-        sine > RoundingPart * a.norm() * b.norm() ? 0.5 * a.dot(b) / sine : 0.0;
+        sine > Imprecision * a.norm() * b.norm() ? 0.5 * a.dot(b) / sine : 0.0;
     }
   }
   Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> edges(
@@ -191,9 +191,9 @@ struct AngleTriangle
       corners.col(c) << TurnBetween(band.Angles[v], this->Origin), bandDistances[v], 1.0;
     }
     const Eigen::Vector3d extent = corners.rowwise().maxCoeff() - corners.rowwise().minCoeff();
-    this->HasArea = std::abs(corners.determinant()) > RoundingPart * extent[0] * extent[1];
-    this->First = this->Origin + corners.row(0).minCoeff() - RoundingPart;
-    this->Last = this->Origin + corners.row(0).maxCoeff() + RoundingPart;
+    this->HasArea = std::abs(corners.determinant()) > Imprecision * extent[0] * extent[1];
+    this->First = this->Origin + corners.row(0).minCoeff() - Imprecision;
+    this->Last = this->Origin + corners.row(0).maxCoeff() + Imprecision;
     this->ToWeights = corners.inverse();
   }
 
