@@ -48,6 +48,14 @@ void ListCorners(
   }
 }
 
+/// A corner, and the two vertices that follow its vertex in its triangle.
+struct Wedge
+{
+  int Corner;
+  int First;
+  int Second;
+};
+
 /// Walks the fan of triangles around one vertex after the other. The scratch
 /// array makes each vertex cost its valence, however large, without hashing.
 class FanWalker
@@ -69,14 +77,15 @@ public:
     this->Unsorted.clear();
     for (int corner = last; corner >= 0; corner = before[corner])
     {
-      this->Unsorted.push_back(corner);
+      this->Unsorted.push_back(
+        { corner, FirstAfter(this->Mesh, corner), SecondAfter(this->Mesh, corner) });
     }
     std::reverse(this->Unsorted.begin(), this->Unsorted.end());
-    for (const int corner : this->Unsorted)
+    for (std::size_t i = 0; i < this->Unsorted.size(); ++i)
     {
-      End& first = this->Ends[FirstAfter(this->Mesh, corner)];
-      End& second = this->Ends[SecondAfter(this->Mesh, corner)];
-      first.Corner = corner;
+      End& first = this->Ends[this->Unsorted[i].First];
+      End& second = this->Ends[this->Unsorted[i].Second];
+      first.Place = static_cast<int>(i);
       first.Outgoing = Counted(first.Outgoing);
       second.Incoming = Counted(second.Incoming);
     }
@@ -87,14 +96,14 @@ public:
     }
   }
 
-  const std::vector<int>& GetFan() const { return this->Fan; }
+  const std::vector<Wedge>& GetFan() const { return this->Fan; }
   bool IsBoundary() const { return this->IsOpen; }
 
 private:
   /// The edge to a neighbor of the vertex in question, as its triangles have it.
   struct End
   {
-    int Corner = -1;            // of the triangle on the edge's left
+    int Place = -1;             // of the wedge on the edge's left
     unsigned char Outgoing = 0; // triangles that run through it from the vertex, up to 3
     unsigned char Incoming = 0; // and towards it
   };
@@ -107,15 +116,15 @@ private:
   void Order()
   {
     const auto open = std::find_if(this->Unsorted.begin(), this->Unsorted.end(),
-      [this](int corner) { return !this->Ends[FirstAfter(this->Mesh, corner)].Incoming; });
+      [this](const Wedge& wedge) { return !this->Ends[wedge.First].Incoming; });
     this->IsOpen = open != this->Unsorted.end();
-    const int start = this->IsOpen ? *open : this->Unsorted.front();
+    const int start = this->IsOpen ? static_cast<int>(open - this->Unsorted.begin()) : 0;
     this->Fan.clear();
-    for (int corner = start; corner >= 0 && this->Fan.size() < this->Unsorted.size();)
+    for (int i = start; i >= 0 && this->Fan.size() < this->Unsorted.size();)
     {
-      this->Fan.push_back(corner);
-      corner = this->Ends[SecondAfter(this->Mesh, corner)].Corner;
-      if (corner == start)
+      this->Fan.push_back(this->Unsorted[i]);
+      i = this->Ends[this->Unsorted[i].Second].Place;
+      if (i == start)
       {
         break;
       }
@@ -127,9 +136,9 @@ private:
   bool CheckEdges(int v, MeshReport& report)
   {
     bool isAnyBad = false;
-    for (const int corner : this->Unsorted)
+    for (const Wedge& wedge : this->Unsorted)
     {
-      for (const int w : { FirstAfter(this->Mesh, corner), SecondAfter(this->Mesh, corner) })
+      for (const int w : { wedge.First, wedge.Second })
       {
         const End end = this->Ends[w];
         const int total = end.Outgoing + end.Incoming;
@@ -149,8 +158,8 @@ private:
 
   const Triangles& Mesh;
   std::vector<End> Ends; // #V, cleared outside of Walk
-  std::vector<int> Unsorted;
-  std::vector<int> Fan;
+  std::vector<Wedge> Unsorted;
+  std::vector<Wedge> Fan;
   bool IsOpen = false;
 };
 }
@@ -219,15 +228,15 @@ void TriangleMesh::MakeRings(std::vector<int>& corners, const std::vector<int>& 
     else
     {
       walker.Walk(v, lastCorners[v], corners, report);
-      for (const int corner : walker.GetFan())
+      for (const Wedge& wedge : walker.GetFan())
       {
-        corners[corner] = this->NumberOfDirectedEdges();
-        this->Neighbors.push_back(FirstAfter(triangles, corner));
-        this->RingTriangles.push_back(corner);
+        corners[wedge.Corner] = this->NumberOfDirectedEdges();
+        this->Neighbors.push_back(wedge.First);
+        this->RingTriangles.push_back(wedge.Corner);
       }
       if (walker.IsBoundary())
       {
-        this->Neighbors.push_back(SecondAfter(triangles, walker.GetFan().back()));
+        this->Neighbors.push_back(walker.GetFan().back().Second);
         this->RingTriangles.push_back(-1);
       }
     }
