@@ -390,7 +390,7 @@ TEST(MultigridSolverMissing, SaysWhatToDo)
 {
   if (cartan::HasHypre())
   {
-    EXPECT_NO_THROW(ConstrainedSolver(SolverBackend::ConjugateGradients));
+    EXPECT_NO_THROW(ConstrainedSolver{ SolverBackend::ConjugateGradients });
     return;
   }
   try

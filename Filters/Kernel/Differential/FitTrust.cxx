@@ -38,7 +38,7 @@ constexpr double LargestHalfTurnSine = 0.545;
 
 /// The cosine of as much. A neighbor whose normal has turned farther is on the other side
 /// of a sharp edge or of a fold, where triangles lie upside down.
-constexpr double LeastCosine = 0.4;
+constexpr double SmallestCosine = 0.4;
 
 /// The sine of the angle between planes that count as one. Coordinates in single
 /// precision turn the small triangles of fine surfaces by 1e-4.
@@ -130,7 +130,7 @@ bool MayBeWrong(const Neighborhood& neighborhood, const SecondForm& form, bool i
     if (i < neighborhood.OneRingSize())
     {
       isSharp = isSharp || form.HalfTurnSine(neighborhood.Offset(i)) > LargestHalfTurnSine ||
-        form.Normal.dot(neighborhood.Normal(i)) < LeastCosine;
+        form.Normal.dot(neighborhood.Normal(i)) < SmallestCosine;
     }
   }
   const double curvature =
