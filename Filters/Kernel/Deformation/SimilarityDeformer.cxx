@@ -14,6 +14,13 @@ namespace cartan
 {
 namespace
 {
+/// The Frobenius norm, also of what is very far away, whose squares are infinite.
+double StableNorm(const Eigen::Matrix3d& matrix)
+{
+  const double norm = matrix.norm();
+  return std::isinf(norm) ? 1e160 * (1e-160 * matrix).norm() : norm;
+}
+
 /// A determinant below this part of |W|^3 flattens: far above rounding, far
 /// below any scale that features survive.
 constexpr double FlatDeterminant = 1e-12;
@@ -101,8 +108,7 @@ int SimilarityDeformer::GetNumberOfFactorizations() const
 
 void SimilarityDeformer::SetTransform(int vertex, const Eigen::Matrix3d& gradient)
 {
-  // Squares of what is very far away are infinite.
-  this->Scales[vertex] = gradient.stableNorm() / std::sqrt(3.0);
+  this->Scales[vertex] = StableNorm(gradient) / std::sqrt(3.0);
   MatrixAt(this->Transforms, vertex) =
     (this->ScaleFeatures ? this->Scales[vertex] : 1.0) * ProjectOnRotations(gradient);
 }
@@ -157,13 +163,13 @@ void SimilarityDeformer::RefitTransforms(
         }
         auto transform = MatrixAt(this->Transforms, v);
         const Eigen::Matrix3d fit = MatrixAt(fitted, v);
-        const double size = transform.stableNorm();
+        const double size = StableNorm(transform);
         // F R^-1 F: from R to the fit F and as far again.
         const Eigen::Matrix3d rotation = goesBeyond && size > 0.0
           ? Eigen::Matrix3d(std::sqrt(3.0) / size * fit * transform.transpose() * fit)
           : fit;
         // Squares of what is very far away are infinite; the transform has that scale then.
-        this->Scales[v] = !std::isfinite(after) ? transform.stableNorm() / std::sqrt(3.0)
+        this->Scales[v] = !std::isfinite(after) ? StableNorm(transform) / std::sqrt(3.0)
           : before > 0.0                        ? std::sqrt(after / before)
                                                 : 1.0;
         transform = (this->ScaleFeatures ? this->Scales[v] : 1.0) * rotation;
@@ -248,7 +254,7 @@ void SimilarityDeformer::WarnOfSingularTransforms(const HandleTargets& targets)
   IdSample flattened;
   const auto check = [&](const Eigen::Matrix3d& transform, long long id)
   {
-    const double size = transform.stableNorm();
+    const double size = StableNorm(transform);
     const double determinant = transform.determinant();
     if (!(std::abs(determinant) > FlatDeterminant * size * size * size))
     {
