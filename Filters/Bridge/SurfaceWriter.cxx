@@ -183,14 +183,12 @@ std::string UpdateAllNormals(const Surface& surface, const Points* rest, const P
   vtkPolyData* output, const ExecutionContext& context)
 {
   const vtkIdType numberOfCells = output->GetNumberOfCells();
-  const std::string ofPoints =
-    UpdateNormals(output->GetPointData(), output->GetNumberOfPoints(), "points", rest, positions,
-      [&](const Points& points)
-      {
-        const double least =
-          Crushed * BoundingDiagonal(rest ? *rest : positions, surface.Mesh->GetTriangles());
-        return NormalsOfVertices(*surface.Mesh, points, least, context);
-      });
+  const double least = output->GetPointData()->GetNormals()
+    ? Crushed * BoundingDiagonal(rest ? *rest : positions, surface.Mesh->GetTriangles())
+    : 0.0;
+  const std::string ofPoints = UpdateNormals(output->GetPointData(), output->GetNumberOfPoints(),
+    "points", rest, positions,
+    [&](const Points& points) { return NormalsOfVertices(*surface.Mesh, points, least, context); });
   const std::string ofCells =
     UpdateNormals(output->GetCellData(), numberOfCells, "cells", rest, positions,
       [&](const Points& points)

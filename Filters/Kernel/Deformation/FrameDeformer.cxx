@@ -8,6 +8,21 @@
 
 namespace cartan
 {
+namespace
+{
+/// Adds (s A - I) d. `transform` is a row of Matrices; numbers of their own stay in
+/// registers, where Eigen's 3 x 3 matrices go through memory.
+void AddTurned(
+  const double* transform, double scale, const Eigen::Vector3d& d, Eigen::Vector3d& sum)
+{
+  for (int c = 0; c < 3; ++c)
+  {
+    sum[c] +=
+      scale * (transform[c] * d[0] + transform[3 + c] * d[1] + transform[6 + c] * d[2]) - d[c];
+  }
+}
+}
+
 FrameDeformer::FrameDeformer(
   HandleProblem problem, SolverBackend backend, const ExecutionContext& context)
   : SurfaceDeformer(std::move(problem))
@@ -58,7 +73,7 @@ std::size_t FrameDeformer::GetBytes() const
     (this->PositionSystem == this->FrameSystem ? 0 : this->PositionSystem->GetBytes()) +
     (this->Model ? this->Model->GetBytes() : 0) +
     TotalBytes(*this->EdgeWeights, this->RestHeights, this->HandleVertices, this->Transforms,
-      this->TriangleTransforms, this->TriangleWeights) +
+      this->TriangleIds, this->TriangleTransforms, this->TriangleWeights) +
     (this->Table ? this->Table->GetBytes() : 0);
 }
 
@@ -75,6 +90,7 @@ void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransf
     result.Positions.row(held.Vertex) =
       HandleTarget(this->Problem, targets, held.Vertex, held.Handle).transpose();
   }
+  this->NeedsVertices = wantTransforms || this->TriangleIds.empty() || this->NeutralOffsets();
   this->UsesTable = this->DeformByTable(targets, result.Positions, context.Part(0.0, 0.3));
   const bool isDirect = this->UsesTable ||
     (!this->PreservesVolume() &&
@@ -211,39 +227,48 @@ const Points* FrameDeformer::NeutralOffsets() const
 }
 
 /// sum over the triangles t of a vertex i and its edges in them of
-/// c_t,ij (R_t - I) (p_i - p_j).
-Eigen::Vector3d FrameDeformer::TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const
+/// c_t,ij (R_t - I) (p_i - p_j): #V x 3. A triangle's three sums add up to zero.
+Points FrameDeformer::TriangleSums(
+  const Eigen::VectorXd& frameScale, const ExecutionContext& context) const
 {
-  const TriangleMesh& mesh = *this->Problem.Mesh;
   const Points& rest = *this->Problem.Rest;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int d = mesh.RingBegin(vertex); d < mesh.RingEnd(vertex); ++d)
-  {
-    const int t = mesh.LeftTriangle(d);
-    if (t < 0)
+  const cartan::Triangles& triangles = this->Problem.Mesh->GetTriangles();
+  const int count = static_cast<int>(this->TriangleIds.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> parts(count, 6);
+  context.For(count,
+    [&](int begin, int end)
     {
-      continue;
-    }
-    double scale = 0.0;
-    Eigen::RowVector3d edges = Eigen::RowVector3d::Zero();
-    for (int c = 0; c < 3; ++c)
-    {
-      const int corner = mesh.GetTriangles()(t, c);
-      const int other = mesh.GetTriangles()(t, (c + 1) % 3) == vertex
-        ? mesh.GetTriangles()(t, (c + 2) % 3)
-        : mesh.GetTriangles()(t, (c + 1) % 3);
-      scale += frameScale[corner] / 3.0;
-      if (corner != vertex)
+      for (int i = begin; i < end; ++i)
       {
-        edges += this->TriangleWeights(t, c) * (rest.row(vertex) - rest.row(other));
+        const int t = this->TriangleIds[i];
+        const auto weights = this->TriangleWeights.row(t);
+        const Eigen::Vector3d a = rest.row(triangles(t, 0));
+        const Eigen::Vector3d b = rest.row(triangles(t, 1));
+        const Eigen::Vector3d c = rest.row(triangles(t, 2));
+        const double scale = (frameScale[triangles(t, 0)] + frameScale[triangles(t, 1)] +
+                               frameScale[triangles(t, 2)]) /
+          3.0;
+        const double* transform = this->TriangleTransforms.row(i).data();
+        Eigen::Vector3d first = Eigen::Vector3d::Zero();
+        Eigen::Vector3d second = Eigen::Vector3d::Zero();
+        AddTurned(transform, scale, weights[2] * (a - b) + weights[1] * (a - c), first);
+        AddTurned(transform, scale, weights[2] * (b - a) + weights[0] * (b - c), second);
+        parts.row(i) << first.transpose(), second.transpose();
       }
-    }
-    sum += scale * (MatrixAt(this->TriangleTransforms, t) * edges.transpose()) - edges.transpose();
+    });
+  // In one order, whatever the number of threads is.
+  Points sums = Points::Zero(rest.rows(), 3);
+  for (int i = 0; i < count; ++i)
+  {
+    const int t = this->TriangleIds[i];
+    sums.row(triangles(t, 0)) += parts.row(i).head<3>();
+    sums.row(triangles(t, 1)) += parts.row(i).tail<3>();
+    sums.row(triangles(t, 2)) -= parts.row(i).head<3>() + parts.row(i).tail<3>();
   }
-  return sum;
+  return sums;
 }
 
-/// b_i, to which held neighbors and soft constraints add. The unknowns are
+/// b_i, to which held neighbors and soft constraints add, without TriangleSums. The unknowns are
 /// displacements from the rest, whose edges' part, - (p_i - p_j), is in b: where
 /// nothing turns and nothing held moves, b and the displacements are exactly zero,
 /// however small a part is beside the whole.
@@ -252,41 +277,48 @@ Eigen::Vector3d FrameDeformer::TriangleSum(int vertex, const Eigen::VectorXd& fr
 /// ends make of it when each carries the middle of the body under it rigidly,
 ///   (R_i + R_j)/2 (p_j - p_i) + (R_j - R_i) (o_i + o_j)/2,
 /// with o from the middle to the skin: the skin stretches outside of a bend
-/// and shrinks inside, and the middle keeps its length.
+/// and shrinks inside, and the middle keeps its length. With e = p_i - p_j and
+/// o = o_i + o_j the edge adds w_ij/2 [(R_i - I)(e + o) + (R_j - I)(e - o)] to b_i,
+/// so that one product for each edge and one for the vertex are enough.
 Eigen::Vector3d FrameDeformer::RightHandSide(int unknown, const HandleTargets& targets,
   const Matrices& transforms, const DeformedSurface& result) const
 {
   const HandleLaplacian& system = *this->PositionSystem;
   const Points& rest = *this->Problem.Rest;
-  const bool isByTriangle = this->TriangleTransforms.rows() > 0;
   const Points* offsets = this->NeutralOffsets();
+  const bool isByVertex = this->TriangleIds.empty();
   const int v = system.Vertex(unknown);
   const Eigen::Vector3d point = rest.row(v);
-  const auto transform = MatrixAt(transforms, v);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  if (isByTriangle)
-  {
-    sum = this->TriangleSum(v, result.FrameScale);
-  }
+  Eigen::Vector3d own = Eigen::Vector3d::Zero(); // the sum of w_ij/2 (e + o)
   for (const auto* edge = system.EdgesBegin(unknown); edge != system.EdgesEnd(unknown); ++edge)
   {
     const int w = system.Vertex(edge->Neighbor);
-    const auto other = MatrixAt(transforms, w);
-    const double half = 0.5 * edge->Weight;
-    if (!isByTriangle)
+    Eigen::Vector3d ofVertex = Eigen::Vector3d::Zero();
+    Eigen::Vector3d ofNeighbor = Eigen::Vector3d::Zero();
+    if (isByVertex)
     {
-      const Eigen::Vector3d edgeVector = point - rest.row(w).transpose();
-      sum += half * ((transform + other) * edgeVector - 2.0 * edgeVector);
+      ofVertex = point - rest.row(w).transpose();
+      ofNeighbor = ofVertex;
     }
     if (offsets)
     {
-      sum += half * ((transform - other) * (offsets->row(v) + offsets->row(w)).transpose());
+      const Eigen::Vector3d offset = (offsets->row(v) + offsets->row(w)).transpose();
+      ofVertex += offset;
+      ofNeighbor -= offset;
+    }
+    if (isByVertex || offsets)
+    {
+      const double half = 0.5 * edge->Weight;
+      own += half * ofVertex;
+      AddTurned(transforms.data() + 9 * Eigen::Index(w), 1.0, half * ofNeighbor, sum);
     }
     if (edge->Neighbor >= system.NumberOfUnknowns())
     {
       sum += edge->Weight * (result.Positions.row(w) - rest.row(w)).transpose();
     }
   }
+  AddTurned(transforms.data() + 9 * Eigen::Index(v), 1.0, own, sum);
   if (system.SquaredSoftWeight(unknown) > 0.0)
   {
     sum += 0.5 * system.SquaredSoftWeight(unknown) *
@@ -299,11 +331,13 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
   DeformedSurface& result, const ExecutionContext& context)
 {
   const HandleLaplacian& system = *this->PositionSystem;
-  if (this->TriangleTransforms.rows() > 0 && this->TriangleWeights.rows() == 0)
+  if (!this->TriangleIds.empty() && this->TriangleWeights.rows() == 0)
   {
     this->TriangleWeights = CornerWeights(
       *this->Problem.Mesh, *this->Problem.Rest, this->Problem.PositionWeights, context);
   }
+  const Points ofTriangles =
+    this->TriangleIds.empty() ? Points() : this->TriangleSums(result.FrameScale, context);
   Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
   context.For(system.NumberOfUnknowns(),
     [&](int begin, int end)
@@ -311,6 +345,10 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
       for (int i = begin; i < end; ++i)
       {
         rightHandSide.row(i) = this->RightHandSide(i, targets, transforms, result);
+        if (ofTriangles.rows() > 0)
+        {
+          rightHandSide.row(i) += ofTriangles.row(system.Vertex(i));
+        }
       }
     });
   const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide, context);

@@ -83,8 +83,8 @@ protected:
   };
 
   /// Writes into Transforms the linear map of each unknown of FrameSystem and of
-  /// each vertex of HandleVertices, and into TriangleTransforms those of
-  /// triangles where the method has them.
+  /// each vertex of HandleVertices, unless NeedsVertices is false; and into
+  /// TriangleTransforms those of triangles where the method has them.
   virtual void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) = 0;
 
   /// A shortcut for methods whose positions need no solve: whether it served.
@@ -119,9 +119,12 @@ protected:
   std::vector<HandleVertex> HandleVertices;
   /// #V x 9, the identity where nothing moves; empty until first needed.
   Matrices Transforms;
-  /// Empty, or the maps of the triangles that take the place of R_i in the sum,
-  /// which is over the edges of each triangle then: #T x 9.
-  Matrices TriangleTransforms;
+  /// Empty, or the triangles around unknown positions, whose maps take the place of
+  /// R_i in the sum, which is over the edges of each triangle then.
+  std::vector<int> TriangleIds;
+  Matrices TriangleTransforms; ///< #TriangleIds x 9
+  /// Whether Transforms are asked for or enter the positions.
+  bool NeedsVertices = true;
   std::string Warning;
 
 private:
@@ -134,7 +137,7 @@ private:
     DeformedSurface& result, const ExecutionContext& context);
   Eigen::Vector3d RightHandSide(int unknown, const HandleTargets& targets,
     const Matrices& transforms, const DeformedSurface& result) const;
-  Eigen::Vector3d TriangleSum(int vertex, const Eigen::VectorXd& frameScale) const;
+  Points TriangleSums(const Eigen::VectorXd& frameScale, const ExecutionContext& context) const;
   void ScaleFrames(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
   void CloseVolumes(Points& positions);

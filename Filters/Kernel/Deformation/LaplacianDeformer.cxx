@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace cartan
@@ -32,17 +33,73 @@ std::vector<int> ClosedRing(const TriangleMesh& mesh, int v)
   return ring;
 }
 
-std::vector<int> ClosedTwoRing(const TriangleMesh& mesh, int v)
+/// Adds the vertices within two edges of v, v included, to `rings`, each once: those whose
+/// `lastSeen` is not `row`.
+void AddTwoRing(
+  const TriangleMesh& mesh, int v, int row, std::vector<int>& lastSeen, std::vector<int>& rings)
 {
-  std::vector<int> ring;
-  for (const int w : ClosedRing(mesh, v))
+  const auto add = [&](int w)
   {
-    const std::vector<int> more = ClosedRing(mesh, w);
-    ring.insert(ring.end(), more.begin(), more.end());
+    if (std::exchange(lastSeen[w], row) != row)
+    {
+      rings.push_back(w);
+    }
+  };
+  add(v);
+  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  {
+    const int w = mesh.Neighbor(d);
+    add(w);
+    for (int e = mesh.RingBegin(w); e < mesh.RingEnd(w); ++e)
+    {
+      add(mesh.Neighbor(e));
+    }
   }
-  std::sort(ring.begin(), ring.end());
-  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-  return ring;
+}
+
+/// The sum over the points w of a ring of (s_w - s)(p_w - p)^T with the means p and s of the
+/// rest positions and the deformed ones, in one pass; nothing where all move alike.
+std::optional<Eigen::Matrix3d> RingCovariance(
+  const int* begin, const int* end, const Points& rest, const Points& displacements)
+{
+  // Relative to the first point, which is at the center: little is lost below.
+  const double* const restOrigin = rest.row(*begin).data();
+  const double* const origin = displacements.row(*begin).data();
+  double restSum[3] = {};
+  double sum[3] = {};
+  double products[3][3] = {};
+  bool isStill = true;
+  for (const int* w = begin; w != end; ++w)
+  {
+    const double* const point = rest.data() + 3 * static_cast<Eigen::Index>(*w);
+    const double* const moved = displacements.data() + 3 * static_cast<Eigen::Index>(*w);
+    double before[3];
+    double after[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      const double change = moved[c] - origin[c];
+      before[c] = point[c] - restOrigin[c];
+      after[c] = before[c] + change;
+      restSum[c] += before[c];
+      sum[c] += after[c];
+      isStill = isStill && change == 0.0;
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+      for (int r = 0; r < 3; ++r)
+      {
+        products[c][r] += after[r] * before[c];
+      }
+    }
+  }
+  if (isStill)
+  {
+    return {};
+  }
+  const Eigen::Map<const Eigen::Vector3d> sumOfRest(restSum);
+  const Eigen::Map<const Eigen::Vector3d> sumOfAfter(sum);
+  const Eigen::Map<const Eigen::Matrix3d> uncentered(products[0]);
+  return uncentered - sumOfAfter * (sumOfRest.transpose() / static_cast<double>(end - begin));
 }
 
 /// d -> (s I + [h]x) d as a 3 x 4 matrix on (s, h).
@@ -81,9 +138,12 @@ void LaplacianDeformer::FindRings()
   const std::vector<int>& vertices = this->System.GetVertices();
   if (this->Rotations == LaplacianRotations::Estimated)
   {
+    std::vector<int> lastSeen(mesh.NumberOfVertices(), -1);
+    this->TwoRingOffsets.push_back(0);
     for (int row = 0; row < this->NumberOfRows(); ++row)
     {
-      this->TwoRings.push_back(ClosedTwoRing(mesh, vertices[row]));
+      AddTwoRing(mesh, vertices[row], row, lastSeen, this->TwoRings);
+      this->TwoRingOffsets.push_back(this->TwoRings.size());
     }
   }
   if (this->Rotations == LaplacianRotations::Implicit)
@@ -184,29 +244,15 @@ void LaplacianDeformer::EstimateRotations(
     {
       for (int row = begin; row < end; ++row)
       {
-        const std::vector<int>& ring = this->TwoRings[row];
-        Eigen::Vector3d restMean = Eigen::Vector3d::Zero();
-        Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-        for (const int w : ring)
-        {
-          restMean += rest.row(w).transpose();
-          mean += displacements.row(w).transpose();
-        }
-        restMean /= static_cast<double>(ring.size());
-        mean /= static_cast<double>(ring.size());
-        Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-        bool isStill = true;
-        for (const int w : ring)
-        {
-          const Eigen::Vector3d before = rest.row(w).transpose() - restMean;
-          const Eigen::Vector3d change = displacements.row(w).transpose() - mean;
-          covariance += (before + change) * before.transpose();
-          isStill = isStill && change.isZero(0.0);
-        }
+        const std::optional<Eigen::Matrix3d> covariance =
+          RingCovariance(this->TwoRings.data() + this->TwoRingOffsets[row],
+            this->TwoRings.data() + this->TwoRingOffsets[row + 1], rest, displacements);
+        auto transform = MatrixAt(this->Transforms, row);
         // Exact where nothing moves: differential coordinates next to short edges
-        // would make much of the rounding of a fit.
-        MatrixAt(this->Transforms, row) =
-          isStill ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : ProjectOnRotations(covariance);
+        // would make much of the rounding of a fit. Elsewhere the last round's rotation is
+        // near this one's.
+        transform = covariance ? ProjectOnRotations(*covariance, transform)
+                               : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
       }
     });
 }

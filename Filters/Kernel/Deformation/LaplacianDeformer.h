@@ -57,7 +57,7 @@ public:
   {
     return this->GetBaseBytes() + this->System.GetBytes() + this->ImplicitSystem.GetBytes() +
       TotalBytes(this->MovingHandles, this->Differential, this->Rings, this->TwoRings,
-        this->Transforms, this->Fits);
+        this->TwoRingOffsets, this->Transforms, this->Fits);
   }
 
 protected:
@@ -87,10 +87,12 @@ private:
   std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
   Points Differential;            ///< #rows x 3, of the rest
   Matrices Transforms;            ///< #rows x 9
-  /// Of each row: itself and its neighbors, by local number (Implicit); the
-  /// vertices within two edges, itself included (Estimated).
+  /// Implicit: each row and its neighbors, by local number.
   std::vector<std::vector<int>> Rings;
-  std::vector<std::vector<int>> TwoRings;
+  /// Estimated: the vertices within two edges of each row, itself first, one row after
+  /// the other; where each begins, #rows + 1.
+  std::vector<int> TwoRings;
+  std::vector<std::size_t> TwoRingOffsets;
   /// Implicit: (s, h) of each row as a linear function of the positions of its
   /// ring, 4 x 3 k.
   std::vector<Eigen::MatrixXd> Fits;

@@ -62,7 +62,6 @@ PoissonDeformer::PoissonDeformer(HandleProblem problem, Propagation propagation,
   SolverBackend backend, const ExecutionContext& context)
   : FrameDeformer(std::move(problem), backend, context.Part(0.0, 0.6))
 {
-  const TriangleMesh& mesh = *this->Problem.Mesh;
   if (propagation == Propagation::Harmonic)
   {
     this->Harmonic.emplace(this->Problem, this->FrameSystem);
@@ -73,9 +72,9 @@ PoissonDeformer::PoissonDeformer(HandleProblem problem, Propagation propagation,
   }
   for (const HandleLaplacian::Triangle& triangle : this->PositionSystem->Triangles(this->Problem))
   {
-    this->Triangles.push_back(triangle.Id);
+    this->TriangleIds.push_back(triangle.Id);
   }
-  this->TriangleTransforms = Identities(mesh.NumberOfTriangles());
+  this->TriangleTransforms.resize(static_cast<Eigen::Index>(this->TriangleIds.size()), 9);
   context.Report(1.0);
 }
 
@@ -88,10 +87,6 @@ void PoissonDeformer::ComputeTransforms(
   const HandleTargets& targets, const ExecutionContext& context)
 {
   RequireMotions(targets);
-  for (const HandleVertex& held : this->HandleVertices)
-  {
-    MatrixAt(this->Transforms, held.Vertex) = targets.Motions[held.Handle].Linear;
-  }
   const Field ofHandles = MotionBlend(targets.Motions).Coordinates();
   const HandleLaplacian& frames = *this->FrameSystem;
   const Field ofLocals =
@@ -105,16 +100,24 @@ void PoissonDeformer::ComputeTransforms(
   {
     blends.row(frames.Vertex(i)) = ofLocals.row(i);
   }
-  context.For(static_cast<int>(this->Triangles.size()),
+  context.For(static_cast<int>(this->TriangleIds.size()),
     [&](int begin, int end)
     {
       for (int i = begin; i < end; ++i)
       {
-        const auto corners = this->Problem.Mesh->GetTriangles().row(this->Triangles[i]);
-        MatrixAt(this->TriangleTransforms, this->Triangles[i]) = MotionBlend::FromCoordinates(
+        const auto corners = this->Problem.Mesh->GetTriangles().row(this->TriangleIds[i]);
+        MatrixAt(this->TriangleTransforms, i) = MotionBlend::FromCoordinates(
           (blends.row(corners[0]) + blends.row(corners[1]) + blends.row(corners[2])) / 3.0);
       }
     });
+  if (!this->NeedsVertices)
+  {
+    return;
+  }
+  for (const HandleVertex& held : this->HandleVertices)
+  {
+    MatrixAt(this->Transforms, held.Vertex) = targets.Motions[held.Handle].Linear;
+  }
   context.For(frames.NumberOfUnknowns(),
     [&](int begin, int end)
     {

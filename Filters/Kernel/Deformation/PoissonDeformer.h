@@ -33,7 +33,7 @@ public:
   std::size_t GetBytes() const override
   {
     return FrameDeformer::GetBytes() + (this->Harmonic ? this->Harmonic->GetBytes() : 0) +
-      TotalBytes(this->Geodesic, this->Triangles);
+      TotalBytes(this->Geodesic);
   }
 
   /// Throws Error(BadInput) for targets that are not one motion per handle.
@@ -45,7 +45,5 @@ protected:
 private:
   std::optional<HarmonicBlend> Harmonic;
   Field Geodesic; ///< #locals x #Moving, their weights; empty with harmonic ones
-  /// Those around unknown positions.
-  std::vector<int> Triangles;
 };
 }

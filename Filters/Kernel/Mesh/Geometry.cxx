@@ -34,6 +34,7 @@ Points VertexNormals(
   const TriangleMesh& mesh, const Points& points, const ExecutionContext& context)
 {
   const Points areaVectors = TriangleAreaVectors(points, mesh.GetTriangles(), context);
+  const Eigen::VectorXd sizes = areaVectors.rowwise().norm();
   Points normals(mesh.NumberOfVertices(), 3);
   context.For(mesh.NumberOfVertices(),
     [&](int begin, int end)
@@ -47,7 +48,7 @@ Points VertexNormals(
           if (mesh.LeftTriangle(d) >= 0)
           {
             sum += areaVectors.row(mesh.LeftTriangle(d));
-            size += areaVectors.row(mesh.LeftTriangle(d)).norm();
+            size += sizes[mesh.LeftTriangle(d)];
           }
         }
         const double length = sum.norm();
