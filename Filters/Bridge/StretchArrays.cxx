@@ -43,11 +43,11 @@ void AddTo(vtkDataSetAttributes* attributes, const Stretches& stretches)
 }
 }
 
-SurfaceStretches MeasureStretches(const TriangleMesh& mesh, const Connectivity& cells,
-  vtkIdType numberOfCells, const Points& reference, const Points& current,
-  const ExecutionContext& context)
+SurfaceStretches MeasureStretches(const RingStretches& ofPoints, const TriangleMesh& mesh,
+  const Connectivity& cells, vtkIdType numberOfCells, const Points& reference,
+  const Points& current, const ExecutionContext& context)
 {
-  return { VertexStretches(mesh, reference, current, context),
+  return { ofPoints.Measure(current, context),
     ToCells(TriangleStretches(mesh, reference, current, context), cells, numberOfCells,
       TriangleAreas(mesh, reference, context)) };
 }

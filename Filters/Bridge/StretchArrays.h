@@ -17,11 +17,12 @@ struct SurfaceStretches
   Stretches OfCells;  ///< a row per cell, 1 for lines and vertices
 };
 
-/// From one to the other of two surfaces of one connectivity (#V x 3 each). A cell of several
-/// triangles has the stretches of that which is largest in the reference.
-SurfaceStretches MeasureStretches(const TriangleMesh& mesh, const Connectivity& cells,
-  vtkIdType numberOfCells, const Points& reference, const Points& current,
-  const ExecutionContext& context);
+/// To the current one of two surfaces of one connectivity, from the reference that `ofPoints`
+/// holds too (#V x 3 each). A cell of several triangles has the stretches of that which is
+/// largest in the reference.
+SurfaceStretches MeasureStretches(const RingStretches& ofPoints, const TriangleMesh& mesh,
+  const Connectivity& cells, vtkIdType numberOfCells, const Points& reference,
+  const Points& current, const ExecutionContext& context);
 
 /// Adds Stretch1, Stretch2, StretchDirection1 and StretchDirection2 to points and cells.
 void AddStretchArrays(const SurfaceStretches& stretches, vtkPolyData* output);

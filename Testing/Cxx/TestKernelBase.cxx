@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Base/CountingSort.h"
 #include "Kernel/Base/FloodFill.h"
+#include "Kernel/Base/IdSet.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -96,5 +98,33 @@ TEST(FloodFill, VisitsAGridOnceInTheOrderOfDistance)
   for (int i = 0; i < size * size; ++i)
   {
     EXPECT_EQ(isVisited[i], i % size < size - 1) << i;
+  }
+}
+
+// Small and large sets in turn, of ids that share their last digits too.
+TEST(IdSet, ContainsWhatWasInsertedSinceItWasCleared)
+{
+  std::mt19937 random(2);
+  IdSet found;
+  for (const int count : { 0, 5, 90, 3000, 20, 200000, 7 })
+  {
+    found.Clear();
+    std::set<int> expected;
+    for (int i = 0; i < count; ++i)
+    {
+      const int id = i % 2 ? i << 12 & 0x7fffffff : static_cast<int>(random() >> 1);
+      found.Insert(id);
+      found.Insert(id);
+      expected.insert(id);
+    }
+    for (int i = 0; i < 10000; ++i)
+    {
+      const int id = i % 2 ? i << 12 & 0x7fffffff : static_cast<int>(random() >> 1);
+      ASSERT_EQ(found.Contains(id), expected.count(id) > 0) << id;
+    }
+    for (const int id : expected)
+    {
+      ASSERT_TRUE(found.Contains(id));
+    }
   }
 }

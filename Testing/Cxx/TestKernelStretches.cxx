@@ -39,6 +39,13 @@ Points Mapped(const Points& points, const Eigen::Matrix3d& map)
   return mapped;
 }
 
+Stretches VertexStretches(const TriangleMesh& mesh, const Points& reference, const Points& current)
+{
+  return cartan::RingStretches(
+    std::make_shared<TriangleMesh>(mesh), std::make_shared<Points>(reference))
+    .Measure(current);
+}
+
 /// The stretches and directions of a linear map at places with these reference normals.
 void ExpectLinear(const Stretches& found, const Points& normals, const Eigen::Matrix3d& map)
 {
@@ -72,7 +79,7 @@ TEST(Stretches, OfALinearMapAreItsSingularValuesOnAnyMesh)
     const Points current = Mapped(shape.Positions, map);
     ExpectLinear(cartan::TriangleStretches(mesh, shape.Positions, current),
       cartan::TriangleAreaVectors(shape.Positions, shape.Faces), map);
-    ExpectLinear(cartan::VertexStretches(mesh, shape.Positions, current),
+    ExpectLinear(VertexStretches(mesh, shape.Positions, current),
       cartan::VertexNormals(mesh, shape.Positions), map);
   }
 }
@@ -83,7 +90,7 @@ TEST(Stretches, OfAnInflatedSphereAreTheRatioOfRadii)
   const TriangleMesh mesh = shapes::MakeMesh(sphere);
   const Points inflated = 1.7 * sphere.Positions;
   for (const Stretches& found : { cartan::TriangleStretches(mesh, sphere.Positions, inflated),
-         cartan::VertexStretches(mesh, sphere.Positions, inflated) })
+         VertexStretches(mesh, sphere.Positions, inflated) })
   {
     EXPECT_LT((found.Larger.array() - 1.7).abs().maxCoeff(), Tolerance);
     EXPECT_LT((found.Smaller.array() - 1.7).abs().maxCoeff(), Tolerance);
@@ -104,7 +111,7 @@ TEST(Stretches, OfASimpleShearAreKnown)
     // Line elements of most stretch are at this angle to the x axis when sheared.
     const double angle = 0.5 * std::atan2(2.0, gamma);
     for (const Stretches& found : { cartan::TriangleStretches(mesh, plane.Positions, sheared),
-           cartan::VertexStretches(mesh, plane.Positions, sheared) })
+           VertexStretches(mesh, plane.Positions, sheared) })
     {
       EXPECT_LT((found.Larger.array() - larger).abs().maxCoeff(), Tolerance);
       EXPECT_LT((found.Smaller.array() - 1.0 / larger).abs().maxCoeff(), Tolerance);
@@ -128,7 +135,7 @@ TEST(Stretches, SayWhereThereAreNone)
   const Points line = shape.Positions.col(0) * Eigen::RowVector3d(1.0, 0.0, 0.0);
   const Stretches fromLine = cartan::TriangleStretches(mesh, line, shape.Positions);
   EXPECT_TRUE(std::isnan(fromLine.Larger[0]) && std::isnan(fromLine.Smaller[0]));
-  const Stretches ofVertices = cartan::VertexStretches(mesh, line, shape.Positions);
+  const Stretches ofVertices = VertexStretches(mesh, line, shape.Positions);
   EXPECT_TRUE(std::isnan(ofVertices.Larger[0]));
   EXPECT_EQ(ofVertices.Larger[unused], 1.0);
   // Onto a line: one stretch remains.

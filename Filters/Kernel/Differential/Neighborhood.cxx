@@ -36,6 +36,8 @@ constexpr double AnyDistance = std::numeric_limits<double>::infinity();
 void Neighborhood::Start(int v)
 {
   this->Ids.assign(1, v);
+  this->Found.Clear();
+  this->Found.Insert(v);
   this->Offsets.assign(1, Eigen::Vector3d::Zero());
   this->Cosines.assign(1, 1.0);
   this->AddFan(v, AnyCosine, AnyDistance);
@@ -72,10 +74,12 @@ void Neighborhood::AddFan(int v, double minimumCosine, double maximumSquaredDist
   const int valence = this->Mesh.Valence(v);
   const int step = (valence + MaximumFan - 1) / MaximumFan;
   const int first = step > 1 && valence <= MaximumSearch ? this->NearestInFan(v) : 0;
+  const int ring = this->Mesh.RingBegin(v);
   for (int i = 0; i < valence; i += step)
   {
-    const int w = this->Mesh.Neighbor(this->Mesh.RingBegin(v) + (first + i) % valence);
-    if (std::find(this->Ids.begin(), this->Ids.end(), w) != this->Ids.end())
+    const int place = first + i < valence ? first + i : first + i - valence;
+    const int w = this->Mesh.Neighbor(ring + place);
+    if (this->Found.Contains(w))
     {
       continue;
     }
@@ -88,6 +92,7 @@ void Neighborhood::AddFan(int v, double minimumCosine, double maximumSquaredDist
       this->Cosines.push_back(cosine);
       this->Offsets.push_back(offset);
       this->Ids.push_back(w);
+      this->Found.Insert(w);
     }
   }
 }
@@ -118,7 +123,8 @@ void Neighborhood::CollectBall(int v)
   }
   // Equal distances, as in a regular grid, must not be told apart by rounding.
   radius *= 1.0001;
-  for (int begin = 1; begin < this->Count() && !this->IsFull();)
+  // The fans of the one-ring have given all they have.
+  for (int begin = this->CountWithOneRing; begin < this->Count() && !this->IsFull();)
   {
     const int end = this->Count();
     for (; begin < end; ++begin)

@@ -261,7 +261,7 @@ double Determination(const Neighborhood& neighborhood, const Eigen::Vector3d& no
       const double y = neighborhood.Offset(i).dot(axes.B) / axes.UnitB;
       Vector5 monomials;
       monomials << x, y, 0.5 * x * x, x * y, 0.5 * y * y;
-      matrix.selfadjointView<Eigen::Lower>().rankUpdate(monomials);
+      matrix += monomials.lazyProduct(monomials.transpose());
     }
   }
   matrix.diagonal().array() += TinyRidge * neighborhood.Size();
@@ -287,7 +287,7 @@ bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   {
     const Vector9 monomials = Monomials(neighborhood.Offset(i), axes, earlier);
     const double height = neighborhood.Offset(i).dot(normal);
-    matrix.selfadjointView<Eigen::Lower>().rankUpdate(monomials);
+    matrix += monomials.lazyProduct(monomials.transpose());
     rightHandSide += height * monomials;
     squaredHeights += height * height;
   }
@@ -332,7 +332,7 @@ bool FitNormalCurvatures(const Neighborhood& neighborhood, const Eigen::Vector3d
     const Eigen::Vector3d& offset = neighborhood.Offset(i);
     const double weight = axes.UnitA * axes.UnitA / (offset.squaredNorm() + added);
     const Vector9 monomials = weight * Monomials(offset, axes, earlier);
-    matrix.selfadjointView<Eigen::Lower>().rankUpdate(monomials);
+    matrix += monomials.lazyProduct(monomials.transpose());
     rightHandSide += weight * offset.dot(normal) * monomials;
   }
   // As in FitCubic the norms do not depend on the axes.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/IdSet.h"
 #include "Mesh/TriangleMesh.h"
 
 #include <limits>
@@ -108,6 +109,7 @@ private:
   const Points& Positions;
   const Points* Normals;
   std::vector<int> Ids;
+  IdSet Found; // the same ids
   std::vector<Eigen::Vector3d> Offsets;
   std::vector<double> Cosines; // of the turn of the normal
   int CountWithOneRing = 0;

@@ -11,6 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <numeric>
 
 namespace cartan
 {
@@ -22,10 +25,10 @@ namespace
 constexpr double LinearRidge = 1e-10;
 constexpr double QuadraticRidge = 1e-6;
 
-/// x(s, t) = x(0) + X1 s + X2 t + X11 s^2 / 2 + X12 s t + X22 t^2 / 2
+/// X1, X2, X11, X12, X22
 struct QuadraticPatch
 {
-  Eigen::Matrix<double, 3, 5> Coefficients; // X1, X2, X11, X12, X22
+  const Eigen::Matrix<double, 3, 5>& Coefficients;
 
   Eigen::Vector3d Tangent(int i) const { return this->Coefficients.col(i); }
   Eigen::Vector3d Second(int i, int j) const { return this->Coefficients.col(2 + i + j); }
@@ -59,13 +62,10 @@ struct QuadraticPatch
   }
 };
 
-/// Fits patches to both surfaces around v over the same coordinates (s, t), which
-/// are along uncorrelated axes of the reference's tangent plane and have unit
-/// variance. False if the points coincide.
-bool FitPatches(const Points& current, int v, const Neighborhood& neighborhood,
-  const Eigen::Vector3d& normal, QuadraticPatch& rest, QuadraticPatch& deformed)
+/// The axes of (s, t) around a vertex. False if the points coincide.
+bool FitAxes(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
+  Eigen::Matrix<double, 3, 2>& axes)
 {
-  Eigen::Matrix<double, 3, 2> axes;
   axes.col(0) = normal.unitOrthogonal();
   axes.col(1) = normal.cross(axes.col(0));
   Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
@@ -86,30 +86,18 @@ bool FitPatches(const Points& current, int v, const Neighborhood& neighborhood,
   const double first = std::sqrt(mean + spread);
   axes.col(0) /= first;
   axes.col(1) /= std::max(std::sqrt(std::max(mean - spread, 0.0)), 1e-6 * first);
-
-  using Vector5 = Eigen::Matrix<double, 5, 1>;
-  Eigen::Matrix<double, 5, 5> matrix = Eigen::Matrix<double, 5, 5>::Zero();
-  Eigen::Matrix<double, 5, 6> rightHandSide = Eigen::Matrix<double, 5, 6>::Zero();
-  for (int k = 0; k < neighborhood.Size(); ++k)
-  {
-    const Eigen::RowVector3d before = neighborhood.Offset(k);
-    const Eigen::RowVector3d after = current.row(neighborhood.Vertex(k)) - current.row(v);
-    const double s = before.dot(axes.col(0));
-    const double t = before.dot(axes.col(1));
-    Vector5 monomials;
-    monomials << s, t, 0.5 * s * s, s * t, 0.5 * t * t;
-    matrix.selfadjointView<Eigen::Lower>().rankUpdate(monomials);
-    rightHandSide.leftCols<3>() += monomials * before;
-    rightHandSide.rightCols<3>() += monomials * after;
-  }
-  // A mixed derivative counts twice: the sums do not depend on the axes.
-  Vector5 ridge;
-  ridge << LinearRidge, LinearRidge, QuadraticRidge, 2.0 * QuadraticRidge, QuadraticRidge;
-  matrix.diagonal() += neighborhood.Size() * ridge;
-  const Eigen::Matrix<double, 5, 6> fit = matrix.ldlt().solve(rightHandSide);
-  rest.Coefficients = fit.leftCols<3>().transpose();
-  deformed.Coefficients = fit.rightCols<3>().transpose();
   return true;
+}
+
+using Vector5 = Eigen::Matrix<double, 5, 1>;
+
+Vector5 Monomials(const Eigen::Matrix<double, 3, 2>& axes, const Eigen::Vector3d& offset)
+{
+  const double s = offset.dot(axes.col(0));
+  const double t = offset.dot(axes.col(1));
+  Vector5 monomials;
+  monomials << s, t, 0.5 * s * s, s * t, 0.5 * t * t;
+  return monomials;
 }
 
 /// |grad R|_F^2 / 2 of the map from one patch to the other.
@@ -144,34 +132,118 @@ double RotationEnergy(const QuadraticPatch& rest, const QuadraticPatch& deformed
 }
 }
 
-ShapeDistance MeasureShapeDistance(const TriangleMesh& mesh, const Points& reference,
-  const Points& current, const ExecutionContext& context)
+ShapeDistances::Patch ShapeDistances::Fit(
+  const Neighborhood& neighborhood, const Eigen::Vector3d& normal) const
 {
-  const Points normals = VertexNormals(mesh, reference, context);
-  ShapeDistance distance;
-  distance.Density = Eigen::VectorXd::Zero(mesh.NumberOfVertices());
+  Patch patch;
+  patch.Rest.setZero();
+  if (normal.isZero(0.0) || !FitAxes(neighborhood, normal, patch.Axes))
+  {
+    return patch;
+  }
+  Eigen::Matrix<double, 5, 5> matrix = Eigen::Matrix<double, 5, 5>::Zero();
+  Eigen::Matrix<double, 5, 3> rightHandSide = Eigen::Matrix<double, 5, 3>::Zero();
+  for (int k = 0; k < neighborhood.Size(); ++k)
+  {
+    const Vector5 monomials = Monomials(patch.Axes, neighborhood.Offset(k));
+    matrix += monomials.lazyProduct(monomials.transpose());
+    rightHandSide += monomials.lazyProduct(neighborhood.Offset(k).transpose());
+  }
+  // A mixed derivative counts twice: the sums do not depend on the axes.
+  Vector5 ridge;
+  ridge << LinearRidge, LinearRidge, QuadraticRidge, 2.0 * QuadraticRidge, QuadraticRidge;
+  matrix.diagonal() += neighborhood.Size() * ridge;
+  patch.Inverse = matrix.ldlt().solve(Eigen::Matrix<double, 5, 5>::Identity());
+  patch.Rest = (patch.Inverse * rightHandSide).transpose();
+  return patch;
+}
+
+ShapeDistances::ShapeDistances(const TriangleMesh& mesh, std::shared_ptr<const Points> reference,
+  const ExecutionContext& context)
+  : Reference(std::move(reference))
+  , VertexAreas(BarycentricAreas(mesh, TriangleAreas(mesh, *this->Reference, context)))
+  , Patches(mesh.NumberOfVertices())
+  , Begin(mesh.NumberOfVertices() + 1, 0)
+{
+  const Points normals = VertexNormals(mesh, *this->Reference, context);
+  std::map<int, std::vector<int>> idsOfRanges; // by their first vertices
+  std::mutex access;
   context.For(mesh.NumberOfVertices(),
     [&](int begin, int end)
     {
-      Neighborhood neighborhood(mesh, reference);
-      QuadraticPatch rest;
-      QuadraticPatch deformed;
+      std::vector<int> ids;
+      Neighborhood neighborhood(mesh, *this->Reference);
       for (int v = begin; v < end; ++v)
       {
-        if (!mesh.IsUsed(v) || normals.row(v).isZero(0.0))
+        if (mesh.IsUsed(v))
         {
-          continue;
+          neighborhood.CollectBall(v);
+          this->Patches[v] = this->Fit(neighborhood, normals.row(v).transpose());
+          for (int k = 0; k < neighborhood.Size(); ++k)
+          {
+            ids.push_back(neighborhood.Vertex(k));
+          }
+          this->Begin[v + 1] = neighborhood.Size();
         }
-        neighborhood.CollectBall(v);
-        if (FitPatches(current, v, neighborhood, normals.row(v).transpose(), rest, deformed))
+        else
         {
-          distance.Density[v] = RotationEnergy(rest, deformed);
+          this->Patches[v].Rest.setZero();
+        }
+      }
+      const std::lock_guard<std::mutex> guard(access);
+      idsOfRanges[begin] = std::move(ids);
+    });
+  std::partial_sum(this->Begin.begin(), this->Begin.end(), this->Begin.begin());
+  this->Ids.reserve(this->Begin.back());
+  for (const auto& [begin, ids] : idsOfRanges)
+  {
+    this->Ids.insert(this->Ids.end(), ids.begin(), ids.end());
+  }
+}
+
+/// The coefficients of the same least-squares fit for other positions.
+Eigen::Matrix<double, 3, 5> ShapeDistances::FitPoints(
+  const Patch& patch, int v, const Points& points) const
+{
+  const Points& reference = *this->Reference;
+  Eigen::Matrix<double, 3, 5> sum = Eigen::Matrix<double, 3, 5>::Zero();
+  for (int k = this->Begin[v]; k < this->Begin[v + 1]; ++k)
+  {
+    const int w = this->Ids[k];
+    const Vector5 monomials =
+      Monomials(patch.Axes, (reference.row(w) - reference.row(v)).transpose());
+    const Eigen::Vector3d offset = (points.row(w) - points.row(v)).transpose();
+    sum += offset.lazyProduct(monomials.transpose());
+  }
+  return sum.lazyProduct(patch.Inverse);
+}
+
+ShapeDistance ShapeDistances::Measure(const Points& current, const ExecutionContext& context) const
+{
+  ShapeDistance distance;
+  distance.Density = Eigen::VectorXd::Zero(current.rows());
+  context.For(static_cast<int>(current.rows()),
+    [&](int begin, int end)
+    {
+      for (int v = begin; v < end; ++v)
+      {
+        const Patch& patch = this->Patches[v];
+        if (!patch.Rest.isZero(0.0))
+        {
+          const Eigen::Matrix<double, 3, 5> now = this->FitPoints(patch, v, current);
+          distance.Density[v] = RotationEnergy({ patch.Rest }, { now });
         }
       }
     });
-  distance.Total =
-    distance.Density.dot(BarycentricAreas(mesh, TriangleAreas(mesh, reference, context)));
+  distance.Total = distance.Density.dot(this->VertexAreas);
   return distance;
+}
+
+ShapeDistance MeasureShapeDistance(const TriangleMesh& mesh, const Points& reference,
+  const Points& current, const ExecutionContext& context)
+{
+  return ShapeDistances(mesh, std::make_shared<Points>(reference), context)
+    .Measure(current, context);
 }
 
 ShapeDistance ShapeDistanceOfRotations(const TriangleMesh& mesh, const Points& reference,

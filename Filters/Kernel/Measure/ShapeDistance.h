@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
 
+#include <memory>
+#include <vector>
+
 namespace cartan
 {
+class Neighborhood;
+
 /// The distance of shapes of Lipman et al., Volume and Shape Preservation via
 /// Moving Frame Manipulation, 2007, Eqs. 2 and 3. It does not change when either
 /// surface is moved rigidly.
@@ -21,10 +27,9 @@ struct ShapeDistance
   Eigen::VectorXd Density;
 };
 
-/// The distance of two surfaces of the same connectivity, `reference` and
-/// `current` (#V x 3). With F the linear map that takes the tangents of the
-/// reference to those of the current surface and the unit normal to the unit
-/// normal, R is the orthogonal factor of F = R U.
+/// The distances of surfaces from one reference of the same connectivity. With F the linear
+/// map that takes the tangents of the reference to those of the current surface and the unit
+/// normal to the unit normal, R is the orthogonal factor of F = R U.
 ///
 /// Both surfaces are fitted by quadratics in coordinates (x, y) of the reference's
 /// tangent plane around each vertex (see Neighborhood::CollectBall), which gives F and its
@@ -39,10 +44,49 @@ struct ShapeDistance
 /// Converges with the edge length on irregular meshes too, with slivers and
 /// vertices that all but coincide. Zero where the reference has no normal or
 /// either surface is not fitted by a regular patch: where it has collapsed.
+class ShapeDistances
+{
+public:
+  /// What holds for all current surfaces: which points are fitted around each vertex, over which
+  /// coordinates, and the reference's own fit. O(#V), about 450 bytes per vertex.
+  ShapeDistances(const TriangleMesh& mesh, std::shared_ptr<const Points> reference,
+    const ExecutionContext& context = {});
+
+  /// Of `current` (#V x 3).
+  ShapeDistance Measure(const Points& current, const ExecutionContext& context = {}) const;
+
+  /// Without the reference, which others hold too.
+  std::size_t GetBytes() const
+  {
+    return TotalBytes(this->VertexAreas, this->Patches, this->Begin, this->Ids);
+  }
+
+private:
+  /// The quadratics around a vertex in coordinates (s, t) along uncorrelated axes of the
+  /// reference's tangent plane, of unit variance,
+  ///   x(s, t) = x(0) + X1 s + X2 t + X11 s^2 / 2 + X12 s t + X22 t^2 / 2.
+  struct Patch
+  {
+    Eigen::Matrix<double, 3, 2> Axes;    ///< an offset's s and t are its products with them
+    Eigen::Matrix<double, 5, 5> Inverse; ///< of the normal equations
+    Eigen::Matrix<double, 3, 5> Rest;    ///< X1, X2, X11, X12, X22 of the reference; X1 = 0: none
+  };
+
+  Patch Fit(const Neighborhood& neighborhood, const Eigen::Vector3d& normal) const;
+  Eigen::Matrix<double, 3, 5> FitPoints(const Patch& patch, int v, const Points& points) const;
+
+  std::shared_ptr<const Points> Reference;
+  Eigen::VectorXd VertexAreas;
+  std::vector<Patch> Patches;
+  std::vector<int> Begin; // #V + 1: where the points around each vertex begin in Ids
+  std::vector<int> Ids;
+};
+
+/// Of one current surface (#V x 3 as the reference).
 ShapeDistance MeasureShapeDistance(const TriangleMesh& mesh, const Points& reference,
   const Points& current, const ExecutionContext& context = {});
 
-/// The same for a field of rotations (or other 3 x 3 matrices) that is given
+/// The distance for a field of rotations (or other 3 x 3 matrices) that is given
 /// (#V x 9), smooth on the scale of the edges, with linear interpolation in the
 /// triangles: 1/2 sum over edges of w_ij |R_i - R_j|_F^2, w_ij = (cot a + cot b) / 2.
 /// Triangles without area count as equilateral with the longest edge's length.

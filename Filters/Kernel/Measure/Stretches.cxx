@@ -22,6 +22,10 @@ constexpr double SameStretch = 1e-12;
 constexpr double LinePart = 1e-15;
 constexpr double FlatPart = 1e-20;
 
+/// Rings with a determinant of extents above this part of the cubed trace bend so much that the
+/// inverse by cofactors is as good as that by axes, and much faster.
+constexpr double BentPart = 1e-5;
+
 constexpr double Undefined = std::numeric_limits<double>::quiet_NaN();
 
 using TangentMap = Eigen::Matrix<double, 3, 2>;
@@ -85,42 +89,37 @@ bool MapTriangle(const Eigen::Vector3d p[3], const Eigen::Vector3d q[3], Tangent
   return true;
 }
 
-/// The least-squares map of the ring of v in the tangent plane; false where there is none.
-bool MapRing(const TriangleMesh& mesh, const Points& reference, const Points& current,
-  const Eigen::Vector3d& normal, int v, TangentMap& map)
+/// The pseudo-inverse of a symmetric matrix times two orthonormal tangents; zero where the ring
+/// that the matrix is of has no area.
+TangentMap DualTangents(const Eigen::Matrix3d& extents, const Eigen::Vector3d& normal)
 {
-  Eigen::Matrix3d extents = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  TangentMap duals = TangentMap::Zero();
+  if (normal.isZero(0.0))
   {
-    const Eigen::Vector3d p = (reference.row(mesh.Neighbor(d)) - reference.row(v)).transpose();
-    const Eigen::Vector3d q = (current.row(mesh.Neighbor(d)) - current.row(v)).transpose();
-    const double squared = p.squaredNorm();
-    if (squared > 0.0)
-    {
-      extents += p * p.transpose() / squared;
-      products += q * p.transpose() / squared;
-    }
+    return duals;
+  }
+  TangentMap tangents;
+  tangents.col(0) = normal.unitOrthogonal();
+  tangents.col(1) = normal.cross(tangents.col(0));
+  if (extents.determinant() > BentPart * std::pow(extents.trace(), 3))
+  {
+    return extents.inverse() * tangents;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(extents);
   const Eigen::Vector3d& values = axes.eigenvalues(); // increasing
-  if (normal.isZero(0.0) || !(values[1] > LinePart * values[2]))
+  if (!(values[1] > LinePart * values[2]))
   {
-    return false;
+    return duals;
   }
-  Eigen::Matrix3d fit = Eigen::Matrix3d::Zero();
   for (int k = 0; k < 3; ++k)
   {
     if (values[k] > FlatPart * values[2])
     {
       const Eigen::Vector3d axis = axes.eigenvectors().col(k);
-      fit += products * axis * axis.transpose() / values[k];
+      duals += axis * (axis.transpose() * tangents) / values[k];
     }
   }
-  const Eigen::Vector3d first = normal.unitOrthogonal();
-  map.col(0) = fit * first;
-  map.col(1) = fit * normal.cross(first);
-  return true;
+  return duals;
 }
 }
 
@@ -155,29 +154,67 @@ Stretches TriangleStretches(const TriangleMesh& mesh, const Points& reference,
   return stretches;
 }
 
-Stretches VertexStretches(const TriangleMesh& mesh, const Points& reference, const Points& current,
-  const ExecutionContext& context)
+RingStretches::RingStretches(std::shared_ptr<const TriangleMesh> mesh,
+  std::shared_ptr<const Points> reference, const ExecutionContext& context)
+  : Mesh(std::move(mesh))
+  , Reference(std::move(reference))
+  , Duals(this->Mesh->NumberOfVertices())
 {
-  const Points normals = VertexNormals(mesh, reference, context);
+  const Points normals = VertexNormals(*this->Mesh, *this->Reference, context);
+  context.For(this->Mesh->NumberOfVertices(),
+    [&](int begin, int end)
+    {
+      for (int v = begin; v < end; ++v)
+      {
+        Eigen::Matrix3d extents = Eigen::Matrix3d::Zero();
+        for (int d = this->Mesh->RingBegin(v); d < this->Mesh->RingEnd(v); ++d)
+        {
+          const Eigen::Vector3d p =
+            (this->Reference->row(this->Mesh->Neighbor(d)) - this->Reference->row(v)).transpose();
+          const double squared = p.squaredNorm();
+          if (squared > 0.0)
+          {
+            extents += p * p.transpose() / squared;
+          }
+        }
+        this->Duals[v] = DualTangents(extents, normals.row(v).transpose());
+      }
+    });
+}
+
+Stretches RingStretches::Measure(const Points& current, const ExecutionContext& context) const
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  const Points& reference = *this->Reference;
   Stretches stretches = Sized(mesh.NumberOfVertices());
   context.For(mesh.NumberOfVertices(),
     [&](int begin, int end)
     {
       for (int v = begin; v < end; ++v)
       {
-        TangentMap map;
         if (!mesh.IsUsed(v))
         {
           continue;
         }
-        if (MapRing(mesh, reference, current, normals.row(v).transpose(), v, map))
-        {
-          SetStretch(map, v, stretches);
-        }
-        else
+        const TangentMap& duals = this->Duals[v];
+        if (duals.isZero(0.0))
         {
           SetUndefined(v, stretches);
+          continue;
         }
+        TangentMap map = TangentMap::Zero();
+        for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+        {
+          const int w = mesh.Neighbor(d);
+          const Eigen::RowVector3d p = reference.row(w) - reference.row(v);
+          const double squared = p.squaredNorm();
+          if (squared > 0.0)
+          {
+            const Eigen::Vector3d q = (current.row(w) - current.row(v)).transpose() / squared;
+            map += q.lazyProduct(p * duals);
+          }
+        }
+        SetStretch(map, v, stretches);
       }
     });
   return stretches;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
+
+#include <memory>
+#include <vector>
 
 namespace cartan
 {
@@ -30,8 +34,24 @@ Stretches TriangleStretches(const TriangleMesh& mesh, const Points& reference,
 /// and is looked at in the tangent plane of the vertex normal: where A maps the surface, it is
 /// found exactly, also where the ring is curved. 1 at unused vertices, NaN where the ring has
 /// no area.
-Stretches VertexStretches(const TriangleMesh& mesh, const Points& reference, const Points& current,
-  const ExecutionContext& context = {});
+class RingStretches
+{
+public:
+  /// What holds for all current surfaces: with M = sum_j p_j p_j^T / |p_j|^2 and orthonormal
+  /// tangents t_i the images A t_i are sum_j q_j (p_j . w_i) / |p_j|^2, w_i = M^-1 t_i.
+  RingStretches(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const Points> reference,
+    const ExecutionContext& context = {});
+
+  Stretches Measure(const Points& current, const ExecutionContext& context = {}) const;
+
+  /// Without mesh and reference, which others hold too.
+  std::size_t GetBytes() const { return BytesOf(this->Duals); }
+
+private:
+  std::shared_ptr<const TriangleMesh> Mesh;
+  std::shared_ptr<const Points> Reference;
+  std::vector<Eigen::Matrix<double, 3, 2>> Duals; // w_1 and w_2; zero: none
+};
 
 /// What is made of a stretch s (Holzapfel, Nonlinear Solid Mechanics, 2000, section 2.5).
 enum class StrainMeasure
