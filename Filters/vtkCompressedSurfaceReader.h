@@ -9,7 +9,7 @@
  * kept from one update to the next.
  *
  * Errors, each with an empty output: no FileName, a file that cannot be read, is no
- * compressed surface, of another version, cut off or damaged; a build without meshoptimizer.
+ * compressed surface, of another version, cut off or damaged.
  * A file from a stranger can do no harm: every number in it is checked, and the memory that
  * is taken is in proportion to its length.
  *

@@ -15,8 +15,8 @@
  *
  * Errors, each without a file: no FileName, or a file that cannot be written; more anchors
  * than points; a MaximumError that 16 bits do not meet (the message says what they reach);
- * time steps of different cells; a build without meshoptimizer; inputs that are not the
- * surfaces that vtkSurfaceFilter takes. Warnings: point arrays of text or of bits, which are
+ * time steps of different cells; inputs that are not the surfaces that vtkSurfaceFilter
+ * takes. Warnings: point arrays of text or of bits, which are
  * not written, and those of vtkSurfaceFilter.
  *
  * Reference: Sorkine, Cohen-Or, Toledo, High-pass Quantization for Mesh Encoding, Symposium

@@ -3,8 +3,8 @@
 
 #include "Bridge/SurfaceReader.h"
 #include "Kernel/Compression/CompressedSurface.h"
+#include "Kernel/Compression/ConnectivityCoder.h"
 #include "Kernel/Compression/QualitySearch.h"
-#include "Kernel/Compression/TraversalOrder.h"
 
 class vtkPolyData;
 

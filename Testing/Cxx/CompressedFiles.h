@@ -5,8 +5,8 @@
 
 #include "Kernel/Base/Error.h"
 #include "Kernel/Compression/CompressedSurface.h"
+#include "Kernel/Compression/ConnectivityCoder.h"
 #include "Kernel/Compression/SectionFile.h"
-#include "Kernel/Compression/TraversalOrder.h"
 
 #include <cmath>
 #include <cstring>

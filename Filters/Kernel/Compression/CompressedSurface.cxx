@@ -2,7 +2,7 @@
 #include "Compression/CompressedSurface.h"
 
 #include "Base/Error.h"
-#include "Compression/IndexCoder.h"
+#include "Compression/ConnectivityCoder.h"
 #include "Compression/ResidualCoder.h"
 #include "Compression/SectionFile.h"
 
@@ -140,8 +140,8 @@ std::vector<unsigned char> EncodeNumbers(std::vector<int> numbers)
 std::vector<unsigned char> EncodeConnectivity(const TriangleMesh& mesh)
 {
   ByteWriter writer;
-  writer.AppendFor(EncodeTriangles(mesh.GetTriangles(), mesh.NumberOfVertices()),
-    static_cast<std::size_t>(mesh.NumberOfTriangles()));
+  writer.AppendFor(EncodeTriangles(mesh), static_cast<std::size_t>(mesh.NumberOfTriangles()),
+    ByteWriter::MostTrianglesPerByte);
   return writer.Finish();
 }
 
@@ -201,7 +201,7 @@ struct Head
   {
     Require(this->Triangles > 0 &&
         this->Triangles <= std::uint64_t{ TriangleMesh::MostTriangles } &&
-        this->Triangles / ByteWriter::MostElementsPerByte <= connectivitySize,
+        this->Triangles / ByteWriter::MostTrianglesPerByte <= connectivitySize,
       "it cannot have as many triangles as it is said to have");
     Require(this->Used <= 3 * this->Triangles && this->Used <= this->Vertices &&
         this->Vertices - this->Used <= fileSize / (3 * sizeof(double)),

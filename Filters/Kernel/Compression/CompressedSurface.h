@@ -17,7 +17,7 @@ struct CodedStep
 };
 
 /// A compressed surface, the contents of a file `.csf`: one connectivity and one or more
-/// time steps. Vertices are numbered as in TraversalOrder.
+/// time steps. Triangles and vertices are in TraversalOrder.
 struct CompressedSurface
 {
   std::shared_ptr<const TriangleMesh> Mesh; ///< used vertices come first
@@ -40,7 +40,7 @@ struct CompressedSizes
 
 /// The bytes of a file, see SectionFile. Differential coordinates of a step that has the
 /// scale of the one before are coded as differences from it if that takes less. Throws
-/// Error(BadInput) in a build without meshoptimizer.
+/// Error(BadInput) when triangles and vertices are not in TraversalOrder.
 std::vector<unsigned char> Compress(
   const CompressedSurface& surface, CompressedSizes* sizes = nullptr);
 
@@ -50,7 +50,7 @@ std::vector<double> ReadTimes(const unsigned char* bytes, std::size_t size);
 /// Decodes bytes that may come from anyone. Throws Error(BadInput) with the rest of a
 /// sentence, "the header is cut off", unless all is right: the triangles are an oriented
 /// manifold on the used vertices, each component has an anchor, all numbers are in their
-/// ranges. Takes memory in proportion to `size`: a byte stands for at most 8 triangles,
+/// ranges. Takes memory in proportion to `size`: a byte stands for at most 32 triangles, or 8
 /// vertices or values.
 CompressedSurface Decompress(const unsigned char* bytes, std::size_t size);
 }

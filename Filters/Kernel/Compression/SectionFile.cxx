@@ -157,10 +157,11 @@ void ByteWriter::Append(const std::vector<unsigned char>& bytes)
   this->Bytes.insert(this->Bytes.end(), bytes.begin(), bytes.end());
 }
 
-void ByteWriter::AppendFor(const std::vector<unsigned char>& code, std::size_t elements)
+void ByteWriter::AppendFor(
+  const std::vector<unsigned char>& code, std::size_t elements, std::size_t mostPerByte)
 {
   this->Append(code);
-  const std::size_t least = (elements + MostElementsPerByte - 1) / MostElementsPerByte;
+  const std::size_t least = (elements + mostPerByte - 1) / mostPerByte;
   this->Bytes.insert(this->Bytes.end(), least > code.size() ? least - code.size() : 0, 0);
 }
 

@@ -20,7 +20,7 @@ namespace cartan
 ///     the bytes of all sections, one after the other, to the end of the file
 namespace sectionfile
 {
-constexpr std::uint32_t Version = 1;
+constexpr std::uint32_t Version = 2;
 
 struct Section
 {
@@ -54,6 +54,7 @@ class ByteWriter
 {
 public:
   static constexpr std::size_t MostElementsPerByte = 8;
+  static constexpr std::size_t MostTrianglesPerByte = 32; // of regular surfaces
 
   void U8(std::uint8_t value) { this->Bytes.push_back(value); }
   void U32(std::uint32_t value) { this->Number(value, 4); }
@@ -62,9 +63,10 @@ public:
   void Text(const std::string& text);
   void Append(const std::vector<unsigned char>& bytes);
 
-  /// Appends the code of so many elements, and zeros where it has less than a byte for 8 of
-  /// them: a decoder need not believe in more.
-  void AppendFor(const std::vector<unsigned char>& code, std::size_t elements);
+  /// Appends the code of so many elements, and zeros where it has less than a byte for
+  /// `mostPerByte` of them: a decoder need not believe in more.
+  void AppendFor(const std::vector<unsigned char>& code, std::size_t elements,
+    std::size_t mostPerByte = MostElementsPerByte);
 
   std::vector<unsigned char> Finish() { return std::move(this->Bytes); }
 
