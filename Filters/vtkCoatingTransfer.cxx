@@ -5,6 +5,7 @@
 #include "Bridge/HandleArrays.h"
 #include "Bridge/MatchedSurfaces.h"
 #include "Bridge/PointArrays.h"
+#include "Bridge/PointKeys.h"
 #include "Bridge/SurfacePlaces.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Algebra/SimilarityFit.h"
@@ -74,23 +75,6 @@ cartan::Points TexturePoints(
   {
     points(v, 0) = coordinates->GetComponent(v, 0);
     points(v, 1) = coordinates->GetComponent(v, 1);
-  }
-  return points;
-}
-
-/// The point of each key.
-std::map<int, int> ReadKeyPoints(
-  vtkPolyData* input, const cartan::TriangleMesh& mesh, const std::string& name)
-{
-  std::map<int, int> points;
-  const std::vector<int> keys = cartan::ReadHandleIds(cartan::RequirePointArray(input, name, 1),
-    name, input->GetNumberOfPoints(), "0 is no key, equal numbers from 1 belong together.");
-  for (const int v : cartan::UsedVertices(mesh))
-  {
-    if (keys[v] > 0)
-    {
-      points.emplace(keys[v], v);
-    }
   }
   return points;
 }
@@ -277,8 +261,8 @@ void vtkCoatingTransfer::FindPlaces(Sides& sides, cartan::FilterRun& run) const
   if (this->Correspondence == KEYS)
   {
     target = cartan::Moved(target,
-      cartan::AlignKeys(ReadKeyPoints(sides.TargetData, mesh, this->KeyArrayName), target,
-        ReadKeyPoints(sides.SourceData, *sides.Mesh, this->KeyArrayName), sides.Base));
+      cartan::AlignKeys(cartan::ReadKeyPoints(sides.TargetData, mesh, this->KeyArrayName), target,
+        cartan::ReadKeyPoints(sides.SourceData, *sides.Mesh, this->KeyArrayName), sides.Base));
   }
   else if (this->Alignment != AS_THEY_LIE)
   {

@@ -14,16 +14,22 @@
 /// with surfaces.
 namespace shapes
 {
-/// The scanned mesh of this name ("camel"), with its points as they are.
-inline Shape RealMesh(const std::string& name)
+/// The mesh in a file, with its points as they are.
+inline Shape ReadShape(const std::string& path)
 {
-  const offreader::Mesh mesh = offreader::Read(offreader::MeshPath(name));
+  const offreader::Mesh mesh = offreader::Read(path);
   Shape shape;
   shape.Positions = Eigen::Map<const cartan::Points>(
     mesh.Points.data(), static_cast<Eigen::Index>(mesh.Points.size() / 3), 3);
   shape.Faces = Eigen::Map<const cartan::Triangles>(
     mesh.Triangles.data(), static_cast<Eigen::Index>(mesh.Triangles.size() / 3), 3);
   return shape;
+}
+
+/// The scanned mesh of this name ("camel").
+inline Shape RealMesh(const std::string& name)
+{
+  return ReadShape(offreader::MeshPath(name));
 }
 
 inline cartan::TriangleMesh MakeMesh(const Shape& shape)
