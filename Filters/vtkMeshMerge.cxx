@@ -7,6 +7,7 @@
 #include "Bridge/MergedSurfaceWriter.h"
 #include "Bridge/MotionTable.h"
 #include "Bridge/PointArrays.h"
+#include "Bridge/PointKeys.h"
 #include "Kernel/Base/Constants.h"
 #include "Kernel/Merging/LoopPairing.h"
 #include "Kernel/Merging/SeamFairing.h"
@@ -15,7 +16,6 @@
 #include "Kernel/Mesh/GrowByRings.h"
 #include "vtkHandleMotion.h"
 
-#include "vtkDataArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -64,28 +64,6 @@ struct vtkMeshMerge::Sewn
   std::shared_ptr<const cartan::Points> TargetPoints;
 };
 
-namespace
-{
-/// #V; zeros where there is no such array.
-std::vector<int> ReadKeys(
-  vtkPolyData* input, const cartan::TriangleMesh& mesh, const std::string& name)
-{
-  vtkDataArray* array = input->GetPointData()->GetArray(name.c_str());
-  std::vector<int> keys(mesh.NumberOfVertices(), 0);
-  if (array)
-  {
-    keys = cartan::ReadHandleIds(array, name, input->GetNumberOfPoints(),
-      "0 is no key, equal numbers from 1 belong together.");
-    for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-    {
-      keys[v] = mesh.IsUsed(v) ? keys[v] : 0;
-    }
-  }
-  return keys;
-}
-
-}
-
 vtkMeshMerge::vtkMeshMerge()
   : State(std::make_unique<Internals>())
 {
@@ -112,6 +90,7 @@ void vtkMeshMerge::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BendWidth: " << this->BendWidth << "\n";
   os << indent << "TransitionWidth: " << this->TransitionWidth << "\n";
   os << indent << "SeamFairing: " << this->SeamFairing << "\n";
+  os << indent << "FairingMethod: " << this->FairingMethod << "\n";
   os << indent << "BoundaryKeyArrayName: " << this->BoundaryKeyArrayName << "\n";
   os << indent << "HandleArrayName: " << this->HandleArrayName << "\n";
   os << indent << "FeatureArrayName: " << this->FeatureArrayName << "\n";
@@ -212,9 +191,9 @@ vtkMeshMerge::Sides vtkMeshMerge::ReadSides(cartan::FilterRun& run) const
   Sides sides{ run.Input(0), run.Input(1), run.ReadSurface(0, "target"),
     run.ReadSurface(1, "source"), {}, {}, Eigen::Vector3d::Zero() };
   sides.Target = { { sides.TargetSurface->Mesh, sides.TargetSurface->Positions }, "target",
-    ReadKeys(sides.TargetData, *sides.TargetSurface->Mesh, this->BoundaryKeyArrayName) };
+    cartan::ReadKeys(sides.TargetData, *sides.TargetSurface->Mesh, this->BoundaryKeyArrayName) };
   sides.Source = { { sides.SourceSurface->Mesh, sides.SourceSurface->Positions }, "source",
-    ReadKeys(sides.SourceData, *sides.SourceSurface->Mesh, this->BoundaryKeyArrayName) };
+    cartan::ReadKeys(sides.SourceData, *sides.SourceSurface->Mesh, this->BoundaryKeyArrayName) };
   sides.SourceOffset = sides.SourceSurface->Origin;
   if (this->Configuration == DEPENDENT)
   {
@@ -436,9 +415,17 @@ void vtkMeshMerge::Execute(cartan::FilterRun& run)
   Sewn sewn = this->Sew(sides, paired, run);
   if (this->SeamFairing > 0)
   {
-    cartan::FairRegion(sewn.Mesh,
-      cartan::GrowByRings(sewn.Mesh, cartan::SeamVertices(sewn.Joined), this->SeamFairing),
-      sewn.Positions, run.Context().Part(0.9, 0.95));
+    const std::vector<int> seam = cartan::SeamVertices(sewn.Joined);
+    const cartan::ExecutionContext context = run.Context().Part(0.9, 0.95);
+    if (this->FairingMethod == DELTA_BLEND)
+    {
+      cartan::BlendSeam(sewn.Mesh, seam, this->SeamFairing, sewn.Positions, context);
+    }
+    else
+    {
+      cartan::FairRegion(sewn.Mesh, cartan::GrowByRings(sewn.Mesh, seam, this->SeamFairing),
+        sewn.Positions, context);
+    }
   }
   this->WriteOutputs(sides, paired, sewn, run);
   run.Context().Report(1.0);

@@ -41,8 +41,9 @@
  * DEPENDENT or of handles without points; features on one line, or with held points; see
  * vtkSurfaceFilter.
  *
- * Reference: Fu, Au, Tai, Effective Derivation of Similarity Transformations for Implicit
- * Laplacian Mesh Editing, Computer Graphics Forum 26(1), 2007, section 5.
+ * References: Fu, Au, Tai, Effective Derivation of Similarity Transformations for Implicit
+ * Laplacian Mesh Editing, Computer Graphics Forum 26(1), 2007, section 5; Sorkine et al.,
+ * Laplacian Surface Editing, Symposium on Geometry Processing 2004, section 5 (the blend).
  *
  * @sa vtkBoundaryLoops vtkMarkHandle vtkSimilarityDeformation
  */
@@ -123,12 +124,29 @@ public:
 
   ///@{
   /**
-   * Whether the seam and so many rings of points around it, on both sides, are made as
-   * smooth as possible: their details are lost. 0: not, and the target keeps its place
-   * everywhere. Default: 0.
+   * Whether the seam and so many rings of points around it, on both sides, are made smooth
+   * by the FairingMethod. 0: not, and the target keeps its place everywhere. Default: 0.
    */
   vtkSetClampMacro(SeamFairing, int, 0, 100);
   vtkGetMacro(SeamFairing, int);
+  ///@}
+
+  enum FairingMethodType
+  {
+    THIN_PLATE = 0,
+    DELTA_BLEND = 1
+  };
+
+  ///@{
+  /**
+   * What the seam and its SeamFairing rings become. THIN_PLATE: as smooth as possible, their
+   * details are lost. DELTA_BLEND: Laplacian coordinates of both sides blend, so that details
+   * fade towards the seam, and curved surfaces go on curved. Default: THIN_PLATE.
+   */
+  vtkSetClampMacro(FairingMethod, int, THIN_PLATE, DELTA_BLEND);
+  vtkGetMacro(FairingMethod, int);
+  void SetFairingMethodToThinPlate() { this->SetFairingMethod(THIN_PLATE); }
+  void SetFairingMethodToDeltaBlend() { this->SetFairingMethod(DELTA_BLEND); }
   ///@}
 
   ///@{
@@ -242,6 +260,7 @@ private:
   double BendWidth = 0.0;
   double TransitionWidth = 0.0;
   int SeamFairing = 0;
+  int FairingMethod = THIN_PLATE;
   int NumberOfPairs = 0;
   int NumberOfFactorizations = 0;
   double SeamAngleMean = 0.0;

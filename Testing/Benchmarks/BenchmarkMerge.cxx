@@ -2,9 +2,13 @@
 //
 // Sewing a surface of 100,000 points onto another of that size: the first time, with a moved
 // key, a moved handle, and with a transition, next to the set-up of one deformation by implicit
-// similarities of that size in the same run. Processor time, so that other programs do not count.
+// similarities of that size in the same run. Then two smaller pairs by this and by CGAL's
+// corefinement. Processor time, so that other programs do not count.
 #include "BenchmarkTools.h"
+#include "MergeShapes.h"
+#include "PeerMerge.h"
 
+#include "Kernel/Algebra/SimilarityFit.h"
 #include "Kernel/Base/Constants.h"
 #include "Kernel/Merging/LoopPairing.h"
 #include "Kernel/Merging/SeamFairing.h"
@@ -16,8 +20,9 @@
 #include <exception>
 #include <functional>
 
-using namespace benchmarks;
 using namespace cartan;
+using benchmarks::PrintRow;
+using benchmarks::ProcessorTime;
 
 namespace
 {
@@ -123,6 +128,56 @@ void Sew(const MeshMerge& merge, const MergeInput& target, const MergeInput& sou
       bands.Fade(*source.Mesh, fitted, {}, joined, mesh, positions);
     });
 }
+
+void PrintSeam(const std::string& what, double mean, double maximum, double fairedMean,
+  double fairedMaximum, double seconds)
+{
+  std::printf("  %-44s%6.1f%7.1f%10.1f%7.1f%9.2f s\n", what.c_str(), mean, maximum, fairedMean,
+    fairedMaximum, seconds);
+}
+
+/// The source as it came, where the similarity closest to the fit takes it, and sunk into
+/// the target by a mean edge of its loop: bodies have to overlap for a union.
+Points PlacedForPeer(const shapes::MergeCase& pair, const shapes::Merged& merged)
+{
+  const std::vector<int>& loop = merged.Fit.Loops[0].Target;
+  const Points curve = pair.Target.Positions(loop, Eigen::all);
+  const LoopMeasures measures = MeasureLoop(curve);
+  const double edge = measures.Length / static_cast<double>(loop.size());
+  // The loop runs against the target's boundary, so the vector points into the target.
+  const Eigen::Vector3d sink = -edge * measures.AreaVector.normalized();
+  return Moved(pair.Source.Positions, FitSimilarity(pair.Source.Positions, merged.Fit.Positions))
+           .rowwise() +
+    sink.transpose();
+}
+
+/// Seams of both, before and after fairing of two rings, and the time for all of it.
+void CompareWithPeer(const std::string& name, const shapes::MergeCase& pair)
+{
+  constexpr double Degrees = 180.0 / Pi;
+  shapes::Merged merged;
+  Points faired;
+  const double seconds = Seconds(
+    [&]
+    {
+      merged = shapes::Merge(pair.Target, pair.Source, pair.Pairs);
+      faired = merged.Faired(2);
+    });
+  std::printf("%s of %d and %d points\n", name.c_str(), pair.Source.NumberOfVertices(),
+    pair.Target.NumberOfVertices());
+  const SeamAngles before = merged.Angles();
+  const SeamAngles after = merged.Angles(faired);
+  PrintSeam("sewn", before.Mean * Degrees, before.Maximum * Degrees, after.Mean * Degrees,
+    after.Maximum * Degrees, seconds);
+  const Points placed = PlacedForPeer(pair, merged);
+  PeerSeam peer;
+  const double peerSeconds = Seconds(
+    [&] {
+      peer = MergeByPeer(pair.Target.Positions, pair.Target.Faces, placed, pair.Source.Faces, 2);
+    });
+  PrintSeam("CGAL's union, " + std::to_string(peer.NumberOfEdges) + " edges", peer.Mean,
+    peer.Maximum, peer.FairedMean, peer.FairedMaximum, peerSeconds);
+}
 }
 
 int main()
@@ -155,6 +210,9 @@ int main()
     PrintRow("  pairs and fit", "", fit, "s");
     PrintRow("  sewing, fairing of 2 rings, angles", "", join, "s");
     PrintRow("with a transition of 31 rings", "", transition, "s");
+    std::printf("\n%-46s%s\n", "Seams in degrees", "mean, max    faired mean, max     time");
+    CompareWithPeer("Tubes", shapes::TubesCase());
+    CompareWithPeer("A head and a dinosaur", shapes::HeadCase());
   }
   catch (const std::exception& error)
   {

@@ -345,6 +345,7 @@ inline Subject Merge()
       Number<Filter>(&Filter::SetBendWidth, { 0.0, 0.5 }),
       Number<Filter>(&Filter::SetTransitionWidth, { 0.0, 0.3, 0.1 }),
       Of<Filter>(3, [](Filter* f, int value) { f->SetSeamFairing(value); }),
+      Enumeration<Filter>(2, &Filter::SetFairingMethod),
       Of<Filter>(3,
         [](Filter* f, int value)
         {

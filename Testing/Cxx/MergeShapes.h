@@ -17,13 +17,7 @@ namespace shapes
 /// A mesh in Data/Merging.
 inline Shape MergeMesh(const std::string& name)
 {
-  const offreader::Mesh mesh = offreader::Read(CARTAN_DATA_DIR "/Merging/" + name + ".off");
-  Shape shape;
-  shape.Positions = Eigen::Map<const cartan::Points>(
-    mesh.Points.data(), static_cast<Eigen::Index>(mesh.Points.size() / 3), 3);
-  shape.Faces = Eigen::Map<const cartan::Triangles>(
-    mesh.Triangles.data(), static_cast<Eigen::Index>(mesh.Triangles.size() / 3), 3);
-  return shape;
+  return ReadShape(CARTAN_DATA_DIR "/Merging/" + name + ".off");
 }
 
 inline cartan::MergeInput MakeInput(const Shape& shape)
@@ -146,19 +140,29 @@ struct Merged
   cartan::TriangleMesh Mesh;
   cartan::Points Positions;
 
-  cartan::SeamAngles Angles() const
+  cartan::SeamAngles Angles() const { return this->Angles(this->Positions); }
+
+  cartan::SeamAngles Angles(const cartan::Points& points) const
   {
-    return cartan::MeasureSeam(this->Joined, this->Mesh, this->Positions);
+    return cartan::MeasureSeam(this->Joined, this->Mesh, points);
   }
 
-  /// After the seam and `rings` rings are made smooth.
-  cartan::SeamAngles FairedAngles(int rings) const
+  /// The points after the seam and `rings` rings were made smooth.
+  cartan::Points Faired(int rings) const
   {
     const std::vector<int> region =
       cartan::GrowByRings(this->Mesh, cartan::SeamVertices(this->Joined), rings);
     cartan::Points points = this->Positions;
     cartan::FairRegion(this->Mesh, region, points);
-    return cartan::MeasureSeam(this->Joined, this->Mesh, points);
+    return points;
+  }
+
+  /// The points after details were blended there.
+  cartan::Points Blended(int rings) const
+  {
+    cartan::Points points = this->Positions;
+    cartan::BlendSeam(this->Mesh, cartan::SeamVertices(this->Joined), rings, points);
+    return points;
   }
 
   int EulerNumber() const
@@ -174,6 +178,41 @@ struct Merged
 
 /// Pairs of points with equal keys, source first.
 using Keys = std::vector<std::pair<int, int>>;
+
+/// Two surfaces that are to be sewn together.
+struct MergeCase
+{
+  Shape Target;
+  Shape Source;
+  Keys Pairs;
+};
+
+/// A bumpy tube of 1640 points (a loop of 40) and one of 806 (31).
+inline MergeCase TubesCase()
+{
+  return { MergeMesh("tubes-target"), MergeMesh("tubes-source"),
+    { { 0, 25 }, { 410, 233 }, { 820, 415 }, { 1230, 623 } } };
+}
+
+/// A head of 12,556 points (a loop of 111) and a dinosaur of 2,915 without its own (32).
+inline MergeCase HeadCase()
+{
+  MergeCase merge;
+  merge.Source = CutByPlane(RealMesh("mannequin-devil"), { 0, 0, -15 }, Eigen::Vector3d::UnitZ());
+  merge.Target = CutByPlane(RealMesh("dino"), { 0, -0.9, 0.9 }, { 0, 0.45, -1.0 });
+  const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> places = {
+    { { 0.7024, -4.0345, -15 }, { -0.0057, -0.3284, 1.1572 } },
+    { { 8.7036, 6.0022, -15 }, { 0.1425, -0.1198, 1.2511 } },
+    { { -0.8888, 14.6942, -15 }, { -0.0046, -0.0464, 1.2841 } },
+    { { -9.1506, 7.1219, -15 }, { -0.1465, -0.12, 1.251 } }
+  };
+  for (const auto& [from, to] : places)
+  {
+    merge.Pairs.emplace_back(
+      BoundaryPointAt(merge.Source, from), BoundaryPointAt(merge.Target, to));
+  }
+  return merge;
+}
 
 /// Both surfaces with their keys.
 struct Sides

@@ -274,6 +274,11 @@ TEST_F(MeshMergeFilter, FairingSmoothsTheSeam)
   this->Filter->SetSeamFairing(2);
   this->ExpectSewn(2);
   EXPECT_LT(this->Filter->GetSeamAngleMean(), 0.8 * folded);
+  const cartan::Points smooth = PointsOf(this->Output());
+  this->Filter->SetFairingMethodToDeltaBlend();
+  this->ExpectSewn(2);
+  EXPECT_LT(this->Filter->GetSeamAngleMean(), 0.8 * folded);
+  EXPECT_GT((PointsOf(this->Filter->GetOutput()) - smooth).rowwise().norm().maxCoeff(), 1e-3);
 }
 
 TEST_F(MeshMergeFilter, SaysWhichLoopsItPairs)

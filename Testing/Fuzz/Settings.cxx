@@ -219,7 +219,8 @@ Parameters MergeParameters()
   using Class = vtkMeshMerge;
   return { Make("Configuration", &Class::SetConfiguration, Integer(0, 1)),
     Make("BendWidth", &Class::SetBendWidth, Length(1e-2, 2.0), Kind::Scalar, 1),
-    Make("SeamFairing", &Class::SetSeamFairing, Integer(0, 4)) };
+    Make("SeamFairing", &Class::SetSeamFairing, Integer(0, 4)),
+    Make("FairingMethod", &Class::SetFairingMethod, Integer(0, 1)) };
 }
 
 Parameters CoatingParameters()

@@ -112,7 +112,7 @@ void BoundRatios(const TriangleMesh& mesh, Eigen::VectorXd& mass)
 }
 
 LaplaceOperator::LaplaceOperator(const TriangleMesh& mesh, const Points& points,
-  LaplacianWeights weights, const ExecutionContext& context)
+  LaplacianWeights weights, const ExecutionContext& context, ObtuseAngles obtuse)
   : Weights(Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges()))
   , Mass(Eigen::VectorXd::Ones(mesh.NumberOfVertices()))
 {
@@ -120,7 +120,11 @@ LaplaceOperator::LaplaceOperator(const TriangleMesh& mesh, const Points& points,
   {
     return;
   }
-  const Points cornerWeights = BoundedCornerWeights(mesh, points, weights, context);
+  Points cornerWeights = BoundedCornerWeights(mesh, points, weights, context);
+  if (obtuse == ObtuseAngles::AsZero)
+  {
+    cornerWeights = cornerWeights.cwiseMax(0.0);
+  }
   for (int d = 0; d < mesh.NumberOfDirectedEdges(); ++d)
   {
     this->Weights[d] =

@@ -5,6 +5,13 @@
 
 namespace cartan
 {
+/// What the cotangents of obtuse angles count for, which are negative.
+enum class ObtuseAngles
+{
+  AsTheyAre,
+  AsZero ///< no weight is negative, but the operator is not that of the surface there
+};
+
 /// The Laplacian of a surface together with the masses of its vertices: what
 /// systems of all orders are made of. Powers of L / m are only as good as their
 /// largest entries are small, so both are kept within bounds that ordinary meshes
@@ -23,9 +30,10 @@ public:
   /// The least mass of a vertex in parts of its neighbors'.
   static constexpr double SmallestMassRatio = 1e-2;
 
-  /// The weights are made symmetric; see EdgeWeights for what they are.
+  /// The weights are made symmetric; see EdgeWeights for what they are. `obtuse` matters to
+  /// cotangent ones only.
   LaplaceOperator(const TriangleMesh& mesh, const Points& points, LaplacianWeights weights,
-    const ExecutionContext& context = {});
+    const ExecutionContext& context = {}, ObtuseAngles obtuse = ObtuseAngles::AsTheyAre);
 
   /// w_ij = w_ji: #D.
   const Eigen::VectorXd& GetWeights() const { return this->Weights; }

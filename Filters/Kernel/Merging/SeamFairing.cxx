@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Merging/SeamFairing.h"
 
-#include "Differential/LaplaceOperator.h"
+#include "Merging/BoundaryFrames.h"
+#include "Merging/SmoothStep.h"
 #include "Mesh/GrowByRings.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace cartan
 {
 RegionFit::RegionFit(const TriangleMesh& mesh, const std::vector<int>& region, const Points& shape,
-  const ExecutionContext& context)
+  const ExecutionContext& context, ObtuseAngles obtuse)
   // Equations see two rings around the region; with a third one their rows are complete.
   : Vertices(GrowByRings(mesh, region, 3))
 {
@@ -20,7 +21,7 @@ RegionFit::RegionFit(const TriangleMesh& mesh, const std::vector<int>& region, c
   {
     isInside[v] = 1;
   }
-  const LaplaceOperator laplace(mesh, shape, LaplacianWeights::Cotangent, context);
+  const LaplaceOperator laplace(mesh, shape, LaplacianWeights::Cotangent, context, obtuse);
   this->InverseMass.resize(static_cast<Eigen::Index>(this->Vertices.size()));
   for (std::size_t i = 0; i < this->Vertices.size(); ++i)
   {
@@ -62,6 +63,65 @@ void RegionFit::Solve(const Points& laplacians, Points& points) const
   }
 }
 
+void RegionFit::Interpolate(const std::vector<char>& isGiven, Eigen::VectorXd& values) const
+{
+  Anchors anchors = Anchors::Hard(isGiven);
+  anchors.Vertices = this->Vertices;
+  AnchoredSystem system;
+  system.Factorize(this->Matrix, anchors);
+  Field field = values;
+  system.Interpolate(field);
+  values = field.col(0);
+}
+
+namespace
+{
+/// #vertices: how many rings away from the seam each is, at most `most`.
+std::vector<int> RingNumbers(const TriangleMesh& mesh, const std::vector<int>& seam, int most,
+  const std::vector<int>& vertices)
+{
+  std::vector<int> numbers(mesh.NumberOfVertices(), most);
+  RingGrowth growth(mesh);
+  for (int ring = most - 1; ring >= 0; --ring)
+  {
+    for (const int v : growth.Grow(seam, ring))
+    {
+      numbers[v] = ring;
+    }
+  }
+  std::vector<int> ofVertices;
+  ofVertices.reserve(vertices.size());
+  for (const int v : vertices)
+  {
+    ofVertices.push_back(numbers[v]);
+  }
+  return ofVertices;
+}
+
+/// The h of BlendSeam, #fit.GetVertices(), from the Laplacians of both sides.
+Eigen::VectorXd BlendedCurvatures(const TriangleMesh& mesh, const RegionFit& fit,
+  const std::vector<int>& ringNumbers, int rings, const Points& laplacians, const Points& normals)
+{
+  const Eigen::VectorXd own = laplacians.cwiseProduct(normals).rowwise().sum();
+  // Rows on the seam see both sides, those on the boundary one half of their surroundings.
+  std::vector<char> isGiven(ringNumbers.size());
+  for (std::size_t i = 0; i < ringNumbers.size(); ++i)
+  {
+    isGiven[i] = fit.GetHeld()[i] || (ringNumbers[i] > 0 && !mesh.IsBoundary(fit.GetVertices()[i]));
+  }
+  Eigen::VectorXd sides = own;
+  fit.Interpolate(isGiven, sides);
+  Eigen::VectorXd blend = own;
+  fit.Interpolate(fit.GetHeld(), blend);
+  for (Eigen::Index i = 0; i < blend.size(); ++i)
+  {
+    const double t = SmoothStep(ringNumbers[i] / (rings + 1.0));
+    blend[i] = (1.0 - t) * blend[i] + t * sides[i];
+  }
+  return blend;
+}
+}
+
 void FairRegion(const TriangleMesh& mesh, const std::vector<int>& region, Points& points,
   const ExecutionContext& context)
 {
@@ -69,11 +129,46 @@ void FairRegion(const TriangleMesh& mesh, const std::vector<int>& region, Points
   {
     return;
   }
-  // The first surface is smoother than the fold, and so are its weights.
-  for (const double from : { 0.0, 0.5 })
+  // The first pulls folds flat, the second one sees a surface without them.
+  for (const bool isFirst : { true, false })
   {
-    const RegionFit fit(mesh, region, points, context.Part(from, from + 0.5));
+    const double from = isFirst ? 0.0 : 0.5;
+    const RegionFit fit(mesh, region, points, context.Part(from, from + 0.5),
+      isFirst ? ObtuseAngles::AsZero : ObtuseAngles::AsTheyAre);
     fit.Solve(Points::Zero(static_cast<Eigen::Index>(fit.GetVertices().size()), 3), points);
+  }
+}
+
+void BlendSeam(const TriangleMesh& mesh, const std::vector<int>& seam, int rings, Points& points,
+  const ExecutionContext& context)
+{
+  const std::vector<int> region = GrowByRings(mesh, seam, rings);
+  if (region.empty())
+  {
+    return;
+  }
+  const RegionFit before(mesh, region, points, context.Part(0.0, 0.2));
+  const std::vector<int>& vertices = before.GetVertices();
+  const Points laplacians = before.Laplacians(points);
+  const Eigen::VectorXd curvatures =
+    BlendedCurvatures(mesh, before, RingNumbers(mesh, seam, rings + 1, vertices), rings, laplacians,
+      AngleWeightedNormals(mesh, points, vertices));
+  FairRegion(mesh, region, points, context.Part(0.2, 0.6));
+  for (const double from : { 0.6, 0.8 })
+  {
+    const RegionFit fit(mesh, region, points, context.Part(from, from + 0.2));
+    const Points normals = AngleWeightedNormals(mesh, points, vertices);
+    Points blended = laplacians;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+    {
+      // On a boundary the Laplacian lies along the surface as well.
+      if (!fit.GetHeld()[i] && !mesh.IsBoundary(vertices[i]))
+      {
+        const auto row = static_cast<Eigen::Index>(i);
+        blended.row(row) = curvatures[row] * normals.row(row);
+      }
+    }
+    fit.Solve(blended, points);
   }
 }
 }
