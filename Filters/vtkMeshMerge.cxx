@@ -64,6 +64,22 @@ struct vtkMeshMerge::Sewn
   std::shared_ptr<const cartan::Points> TargetPoints;
 };
 
+namespace
+{
+/// `key` with the loops of one side.
+cartan::ContentKey WithLoops(cartan::ContentKey key, const std::vector<cartan::LoopPair>& pairs,
+  std::vector<int> cartan::LoopPair::*side)
+{
+  for (const cartan::LoopPair& pair : pairs)
+  {
+    const std::vector<int>& loop = pair.*side;
+    key.Add(static_cast<std::uint64_t>(loop.size()));
+    key.AddBytes(loop.data(), loop.size() * sizeof(int));
+  }
+  return key;
+}
+}
+
 vtkMeshMerge::vtkMeshMerge()
   : State(std::make_unique<Internals>())
 {
@@ -180,10 +196,8 @@ vtkMTimeType vtkMeshMerge::GetMTime()
 
 void vtkMeshMerge::ForgetResults()
 {
-  this->NumberOfPairs = 0;
-  this->NumberOfFactorizations = 0;
-  this->SeamAngleMean = 0.0;
-  this->SeamAngleMaximum = 0.0;
+  this->NumberOfPairs = this->NumberOfFactorizations = 0;
+  this->SeamAngleMean = this->SeamAngleMaximum = 0.0;
 }
 
 vtkMeshMerge::Sides vtkMeshMerge::ReadSides(cartan::FilterRun& run) const
@@ -280,18 +294,16 @@ vtkMeshMerge::Holds vtkMeshMerge::FindHolds(
 
 std::vector<int> vtkMeshMerge::ReadFeatures(const Sides& sides, const Holds& holds) const
 {
-  std::vector<int> features;
   if (!sides.SourceData->GetPointData()->GetArray(this->FeatureArrayName.c_str()))
   {
-    return features;
+    return {};
   }
-  features =
-    cartan::ReadHandles(sides.SourceData, *sides.SourceSurface->Mesh, this->FeatureArrayName)
-      .OfVertex;
+  const cartan::Handles features =
+    cartan::ReadHandles(sides.SourceData, *sides.SourceSurface->Mesh, this->FeatureArrayName);
   cartan::IdSample both;
   for (std::size_t v = 0; v < holds.Of.size(); ++v)
   {
-    if (features[v] > 0 && holds.Of[v] != cartan::SourceHold::Free)
+    if (features.OfVertex[v] > 0 && holds.Of[v] != cartan::SourceHold::Free)
     {
       both.Add(static_cast<long long>(v));
     }
@@ -303,9 +315,7 @@ std::vector<int> vtkMeshMerge::ReadFeatures(const Sides& sides, const Holds& hol
         " of the source are held and in a feature, which finds its own place: unmark them as one "
         "of both.");
   }
-  const bool isAny =
-    std::any_of(features.begin(), features.end(), [](int feature) { return feature > 0; });
-  return isAny ? features : std::vector<int>{};
+  return features.Ids.empty() ? std::vector<int>{} : features.OfVertex;
 }
 
 cartan::FittedSource vtkMeshMerge::Fit(const Sides& sides, const cartan::MergeInput& target,
@@ -314,14 +324,12 @@ cartan::FittedSource vtkMeshMerge::Fit(const Sides& sides, const cartan::MergeIn
 {
   const cartan::ExecutionContext& context = run.Context();
   std::vector<std::vector<int>> loops;
-  cartan::ContentKey key = sides.SourceSurface->Key;
+  cartan::ContentKey key = WithLoops(sides.SourceSurface->Key, pairs, &cartan::LoopPair::Source);
   key.Add(static_cast<std::uint64_t>(this->Configuration));
   key.AddBytes(sides.SourceOffset.data(), 3 * sizeof(double));
   for (const cartan::LoopPair& pair : pairs)
   {
     loops.push_back(pair.Source);
-    key.Add(static_cast<std::uint64_t>(pair.Source.size()));
-    key.AddBytes(pair.Source.data(), pair.Source.size() * sizeof(int));
   }
   const auto fit = [&](double from, double to)
   {
@@ -376,11 +384,20 @@ vtkMeshMerge::Sewn vtkMeshMerge::Sew(
     join(sides.Target.Surface, paired.Pairs, paired.Keys);
     return sewn;
   }
-  const cartan::Transition transition(
-    sides.Target.Surface, paired.Pairs, this->TransitionWidth, context.Part(0.25, 0.3));
-  const cartan::CutSurface& cut = transition.GetCut();
-  join({ cut.Mesh, cut.Positions }, transition.GetPairs(), transition.MoveKeys(paired.Keys));
-  sewn.Fading = transition.Fade(
+  // The source's loops name its pairs.
+  cartan::ContentKey key =
+    WithLoops(WithLoops(sides.TargetSurface->Key, paired.Pairs, &cartan::LoopPair::Target),
+      paired.Pairs, &cartan::LoopPair::Source);
+  key.AddBytes(&this->TransitionWidth, sizeof(this->TransitionWidth));
+  const auto transition = run.Keep<cartan::Transition>(key,
+    [&]
+    {
+      return std::make_unique<cartan::Transition>(
+        sides.Target.Surface, paired.Pairs, this->TransitionWidth, context.Part(0.25, 0.3));
+    });
+  const cartan::CutSurface& cut = transition->GetCut();
+  join({ cut.Mesh, cut.Positions }, transition->GetPairs(), transition->MoveKeys(paired.Keys));
+  sewn.Fading = transition->Fade(
     source, sewn.Fit, holds.Of, sewn.Joined, sewn.Mesh, sewn.Positions, context.Part(0.85, 0.9));
   cartan::NameWholeFaces(cut, sewn.Joined);
   return sewn;

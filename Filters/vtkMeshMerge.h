@@ -31,7 +31,7 @@
  * the source's loop to its place on the target's, 3 the same for a key.
  *
  * As long as the source, its loops and what is held stay the same, nothing is factorized
- * again: a moved key costs two solves.
+ * again: a moved key costs two solves. The target's side of a transition is kept as well.
  *
  * Errors, each with empty outputs: an input without boundary; keys that are not on a
  * boundary, on one input only, twice on one, join a loop to several or cross; different numbers

@@ -117,6 +117,40 @@ TEST_F(MeshMergeTransition, ChangesItsWidthWithoutFactorizingTheSource)
   EXPECT_EQ(this->Filter->GetNumberOfFactorizations(), factorizations);
 }
 
+TEST_F(MeshMergeTransition, IsKeptWhenAKeyMoves)
+{
+  const auto moveKey = [&](vtkIdType by)
+  {
+    vtkDataArray* keys = this->Target->GetPointData()->GetArray("BoundaryKey");
+    keys->Fill(0.0);
+    keys->SetTuple1(this->Target->GetNumberOfPoints() - Around + by, 1.0);
+    keys->Modified();
+    this->Target->Modified();
+  };
+  this->Output();
+  const double without = this->Filter->GetKeptMemory();
+  this->Filter->SetTransitionWidth(0.8);
+  const cartan::Points before = vtktest::PointsOf(this->Output());
+  const double kept = this->Filter->GetKeptMemory();
+  EXPECT_GT(kept, without);
+  moveKey(5);
+  const cartan::Points after = vtktest::PointsOf(this->Output());
+  ExpectQuiet(*this->Log);
+  EXPECT_EQ(this->Filter->GetKeptMemory(), kept);
+  EXPECT_GT((after.bottomRows(Around) - before.bottomRows(Around)).norm(), 0.1);
+  // As a filter that keeps nothing has it.
+  vtkNew<vtkMeshMerge> fresh;
+  fresh->SetInputData(this->Target);
+  fresh->SetSourceData(this->Source);
+  fresh->SetTransitionWidth(0.8);
+  fresh->Update();
+  EXPECT_EQ((vtktest::PointsOf(fresh->GetOutput()) - after).norm(), 0.0);
+  // Another width is another transition.
+  this->Filter->SetTransitionWidth(1.3);
+  this->Output();
+  EXPECT_GT(this->Filter->GetKeptMemory(), kept);
+}
+
 TEST_F(MeshMergeTransition, RefusesWhatIsTooWideOrHeld)
 {
   this->Filter->SetTransitionWidth(3.5);

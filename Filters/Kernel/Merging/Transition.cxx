@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Merging/Transition.h"
 
+#include "Base/Bytes.h"
 #include "Merging/SeamFairing.h"
 #include "Merging/SmoothStep.h"
 #include "Mesh/BoundaryLoops.h"
@@ -278,5 +279,24 @@ Fading Transition::Fade(const TriangleMesh& source, const FittedSource& fitted,
   }
   fit.Solve(laplacians, positions);
   return fading;
+}
+
+std::size_t Transition::GetBytes() const
+{
+  std::size_t bytes = this->Cut.Mesh->GetBytes() +
+    TotalBytes(this->Bands.Distances, this->Bands.LoopOf, *this->Cut.Positions, this->Cut.Places,
+      this->Cut.OriginalFaces, this->Cut.IsOnIsoline);
+  for (const BandCoordinates& band : this->Coordinates)
+  {
+    bytes += TotalBytes(band.Vertices, band.Faces, band.Angles);
+  }
+  for (const std::vector<LoopPair>* pairs : { &this->OldPairs, &this->Pairs })
+  {
+    for (const LoopPair& pair : *pairs)
+    {
+      bytes += TotalBytes(pair.Source, pair.Target);
+    }
+  }
+  return bytes;
 }
 }

@@ -5,6 +5,7 @@
 #include "Merging/MeshMerge.h"
 #include "Merging/TransitionBand.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace cartan
@@ -58,6 +59,9 @@ public:
   Fading Fade(const TriangleMesh& source, const FittedSource& fitted,
     const std::vector<SourceHold>& holds, const JoinedSurface& joined, const TriangleMesh& mesh,
     Points& positions, const ExecutionContext& context = {}) const;
+
+  /// The memory that it holds by itself, without the target's.
+  std::size_t GetBytes() const;
 
 private:
   Eigen::VectorXd IsolineAngles(std::size_t pair) const;
