@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reproduces figures 4, 5 and 7, 8 and 9 of Sorkine, Differential Representations for Mesh
-Processing (2006), on scanned surfaces scaled to unit bounding-box diagonal, and draws a
-few modes. Run by Utilities/demo.sh --spectrum in pvpython; the argument is the build
-folder. spectrum.png, a sheet of all, appears in its folder demo."""
+Processing (2006), on scanned surfaces scaled to unit bounding-box diagonal, draws a few modes,
+and bits and errors of compressed surfaces and of Draco. Run by Utilities/demo.sh --spectrum
+in pvpython; the argument is the build folder. spectrum.png, a sheet of all, appears in its
+folder demo."""
 import os
 import sys
 
@@ -13,6 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from pictures import (Panel, camera_for, draw, heading, one_below_the_other, side_by_side,
                       write_sheet)
+from rates import rate_charts
 import cartan_testing
 
 SIZE, HEADING = (560, 560), 60
@@ -134,6 +136,16 @@ def figure(title, panels, reference, view=FRONT):
     return one_below_the_other([heading(title, (len(panels) * SIZE[0], HEADING)), row])
 
 
+def rates(surfaces):
+    """A row of two charts per surface, as wide as five panels."""
+    size = (5 * SIZE[0] // (2 * len(surfaces)), 560)
+    title = "Bits per point at equal error: compressed surfaces and Draco"
+    return one_below_the_other([
+        heading(title, (5 * SIZE[0], HEADING)),
+        side_by_side([chart for name, surface in surfaces
+                      for chart in rate_charts(name, surface, size)])])
+
+
 def main(build):
     folder = os.path.join(build, "demo")
     elephant, camel, armadillo = scan("elephant"), scan("camel"), scan("armadillo")
@@ -150,6 +162,7 @@ def main(build):
                [*visual_errors(camel, (2, 4, 20, 100)), at_rest(camel)], camel),
         figure("Modes of the cotangent Laplacian", modes(armadillo, (1, 3, 8, 20, 60)), armadillo,
                (0.2, 0.1, -1)),
+        rates([("elephant", elephant), ("camel", camel)]),
     ])
     write_sheet(sheet, folder, "spectrum")
 
