@@ -141,7 +141,7 @@ public:
   /**
    * What the seam and its SeamFairing rings become. THIN_PLATE: as smooth as possible, their
    * details are lost. DELTA_BLEND: Laplacian coordinates of both sides blend, so that details
-   * fade towards the seam, and curved surfaces go on curved. Default: THIN_PLATE.
+   * are lost next to the seam alone, and curved surfaces go on curved. Default: THIN_PLATE.
    */
   vtkSetClampMacro(FairingMethod, int, THIN_PLATE, DELTA_BLEND);
   vtkGetMacro(FairingMethod, int);

@@ -108,24 +108,21 @@ TEST(SeamFairing, MakesOneSphereOfTwoCaps)
   const Merged graded = SewCaps(4, 3);
   ShowFigure("radius error of other sizes, thin plate", RadiusError(graded.Faired(3)));
   ShowFigure("radius error of other sizes, blend", RadiusError(graded.Blended(3)));
-  EXPECT_LT(RadiusError(graded.Blended(3)), 0.25 * RadiusError(graded.Faired(3)));
+  EXPECT_LT(RadiusError(graded.Blended(3)), 0.5 * RadiusError(graded.Faired(3)));
 }
 
-TEST(SeamFairing, FadesDetailsTowardsTheSeam)
+TEST(SeamFairing, KeepsDetailsWithABlend)
 {
   const Merged merged = SewWavyTubes(6, 0.03);
   const cartan::Points smooth = merged.Faired(6);
   const cartan::Points blended = merged.Blended(6);
-  // Rings are .083 apart.
-  double before = 1.0;
-  for (const double from : { 0.06, 0.22, 0.38 })
-  {
-    const double ratio =
-      Moves(merged, blended, from, from + 0.16) / Moves(merged, smooth, from, from + 0.16);
-    ShowFigure("moved by the blend in parts of the thin plate's", ratio);
-    EXPECT_LT(ratio, before);
-    before = ratio;
-  }
+  // Rings are .083 apart; the seam and those beside it lose them.
+  const double all = Moves(merged, blended, 0.0, 1.0) / Moves(merged, smooth, 0.0, 1.0);
+  const double outside = Moves(merged, blended, 0.2, 1.0) / Moves(merged, smooth, 0.2, 1.0);
+  ShowFigure("moved by the blend in parts of the thin plate's", all);
+  ShowFigure("the same where details are kept", outside);
+  EXPECT_LT(all, 0.3);
+  EXPECT_LT(outside, 0.3);
 }
 
 TEST(SeamFairing, LeavesAPlane)

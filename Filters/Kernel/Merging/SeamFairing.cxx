@@ -2,7 +2,6 @@
 #include "Merging/SeamFairing.h"
 
 #include "Merging/BoundaryFrames.h"
-#include "Merging/SmoothStep.h"
 #include "Mesh/GrowByRings.h"
 
 #include <algorithm>
@@ -76,49 +75,26 @@ void RegionFit::Interpolate(const std::vector<char>& isGiven, Eigen::VectorXd& v
 
 namespace
 {
-/// #vertices: how many rings away from the seam each is, at most `most`.
-std::vector<int> RingNumbers(const TriangleMesh& mesh, const std::vector<int>& seam, int most,
-  const std::vector<int>& vertices)
-{
-  std::vector<int> numbers(mesh.NumberOfVertices(), most);
-  RingGrowth growth(mesh);
-  for (int ring = most - 1; ring >= 0; --ring)
-  {
-    for (const int v : growth.Grow(seam, ring))
-    {
-      numbers[v] = ring;
-    }
-  }
-  std::vector<int> ofVertices;
-  ofVertices.reserve(vertices.size());
-  for (const int v : vertices)
-  {
-    ofVertices.push_back(numbers[v]);
-  }
-  return ofVertices;
-}
-
-/// The h of BlendSeam, #fit.GetVertices(), from the Laplacians of both sides.
+/// The h of BlendSeam, #fit.GetVertices().
 Eigen::VectorXd BlendedCurvatures(const TriangleMesh& mesh, const RegionFit& fit,
-  const std::vector<int>& ringNumbers, int rings, const Points& laplacians, const Points& normals)
+  const std::vector<int>& seam, const Points& laplacians, const Points& normals)
 {
-  const Eigen::VectorXd own = laplacians.cwiseProduct(normals).rowwise().sum();
-  // Rows on the seam see both sides, those on the boundary one half of their surroundings.
-  std::vector<char> isGiven(ringNumbers.size());
-  for (std::size_t i = 0; i < ringNumbers.size(); ++i)
+  // Rows on the seam see both sides, those beside it what was moved onto it, and those on the
+  // boundary one half of their surroundings.
+  std::vector<char> isDoubtful(mesh.NumberOfVertices(), 0);
+  for (const int v : GrowByRings(mesh, seam, 1))
   {
-    isGiven[i] = fit.GetHeld()[i] || (ringNumbers[i] > 0 && !mesh.IsBoundary(fit.GetVertices()[i]));
+    isDoubtful[v] = 1;
   }
-  Eigen::VectorXd sides = own;
-  fit.Interpolate(isGiven, sides);
-  Eigen::VectorXd blend = own;
-  fit.Interpolate(fit.GetHeld(), blend);
-  for (Eigen::Index i = 0; i < blend.size(); ++i)
+  std::vector<char> isGiven;
+  for (std::size_t i = 0; i < fit.GetVertices().size(); ++i)
   {
-    const double t = SmoothStep(ringNumbers[i] / (rings + 1.0));
-    blend[i] = (1.0 - t) * blend[i] + t * sides[i];
+    const int v = fit.GetVertices()[i];
+    isGiven.push_back(fit.GetHeld()[i] || (!isDoubtful[v] && !mesh.IsBoundary(v)));
   }
-  return blend;
+  Eigen::VectorXd curvatures = laplacians.cwiseProduct(normals).rowwise().sum();
+  fit.Interpolate(isGiven, curvatures);
+  return curvatures;
 }
 }
 
@@ -147,17 +123,18 @@ void BlendSeam(const TriangleMesh& mesh, const std::vector<int>& seam, int rings
   {
     return;
   }
-  const RegionFit before(mesh, region, points, context.Part(0.0, 0.2));
-  const std::vector<int>& vertices = before.GetVertices();
-  const Points laplacians = before.Laplacians(points);
-  const Eigen::VectorXd curvatures =
-    BlendedCurvatures(mesh, before, RingNumbers(mesh, seam, rings + 1, vertices), rings, laplacians,
-      AngleWeightedNormals(mesh, points, vertices));
-  FairRegion(mesh, region, points, context.Part(0.2, 0.6));
-  for (const double from : { 0.6, 0.8 })
+  Points laplacians;
+  Eigen::VectorXd curvatures;
+  for (const double from : { 0.0, 0.5 })
   {
-    const RegionFit fit(mesh, region, points, context.Part(from, from + 0.2));
+    const RegionFit fit(mesh, region, points, context.Part(from, from + 0.5));
+    const std::vector<int>& vertices = fit.GetVertices();
     const Points normals = AngleWeightedNormals(mesh, points, vertices);
+    if (from == 0.0)
+    {
+      laplacians = fit.Laplacians(points);
+      curvatures = BlendedCurvatures(mesh, fit, seam, laplacians, normals);
+    }
     Points blended = laplacians;
     for (std::size_t i = 0; i < vertices.size(); ++i)
     {

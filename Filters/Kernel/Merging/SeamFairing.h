@@ -58,17 +58,18 @@ private:
 void FairRegion(const TriangleMesh& mesh, const std::vector<int>& region, Points& points,
   const ExecutionContext& context = {});
 
-/// Moves the seam and `rings` >= 1 rings around it so that the details of both sides fade
-/// towards the seam and blend there. Beside the seam the Laplacian of a surface is
-/// 2 H n with its mean curvature H. So the H of both sides are blended, and the points fitted to
+/// Moves the seam and `rings` >= 1 rings around it so that the Laplacian coordinates of both
+/// sides go on to the seam and blend there:
 ///
-///   d_i = h_i n_i,  h_i = (1 - t) h*_i + t 2 H_i,
+///   d_i = h_i n_i,
 ///
-/// with t rising from 0 at the seam to 1 behind the last ring, and h* the harmonic
-/// function that continues what is around the region. So a sphere that was cut in two is one again,
-/// which the thin plate flattens (the blend of Laplacian coordinates of Sorkine et al., Laplacian
-/// Surface Editing, 2004, section 5, without its dependence on how both sides are turned). Normals
-/// are those of the thin plate, and once more those of the result. Throws what RegionFit throws.
+/// where h_i, twice the mean curvature, is that of the vertex's own side, but on the seam and the
+/// ring beside it the harmonic function that continues both sides. So details are kept up to
+/// that ring, and a sphere that was cut in two is one again, which the thin plate
+/// flattens (the blend of Laplacian coordinates of Sorkine et al., Laplacian Surface Editing,
+/// 2004, section 5, without its dependence on how both sides are turned). Weights and normals
+/// are those of the surface as it is, and once more those of the result. Throws what RegionFit
+/// throws.
 void BlendSeam(const TriangleMesh& mesh, const std::vector<int>& seam, int rings, Points& points,
   const ExecutionContext& context = {});
 }
