@@ -41,6 +41,20 @@ TEST(ClosestAlignment, TakesACopyBack)
   }
 }
 
+// So does one in another unit.
+TEST(ClosestAlignment, FindsSizesThatDifferByMuch)
+{
+  const shapes::Shape shape = shapes::Ellipsoid(2, { 2.0, 1.0, 0.6 });
+  const cartan::TriangleMesh mesh(shape.NumberOfVertices(), shape.Faces);
+  for (const double scale : { 1e-3, 0.1, 10.0, 1e3 })
+  {
+    const Eigen::Matrix4d motion = Similarity(scale, 0.3, { 3.0, -2.0, 1.0 });
+    const cartan::Points moved = cartan::Moved(shape.Positions, motion);
+    const Eigen::Matrix4d found = cartan::AlignToSurface(moved, mesh, shape.Positions, true);
+    EXPECT_LT(LargestDifference(found * motion, Eigen::Matrix4d::Identity()), 1e-3) << scale;
+  }
+}
+
 // A common motion of both sides turns the alignment with them.
 TEST(ClosestAlignment, FollowsACommonMotion)
 {

@@ -46,11 +46,11 @@ Points ClosestPoints(
   return closest;
 }
 
-/// The root of the sum of squared distances from the mean.
+/// The root of the mean squared distance from the mean.
 double Extent(const Points& points)
 {
   const Eigen::RowVector3d mean = points.colwise().mean();
-  return (points.rowwise() - mean).norm();
+  return (points.rowwise() - mean).norm() / std::sqrt(static_cast<double>(points.rows()));
 }
 
 /// x -> mean of `to` + s R (x - mean of `from`), s = extent of `to` / extent of `from`.
@@ -73,14 +73,14 @@ Eigen::Matrix4d AlignToSurface(const Points& from, const TriangleMesh& mesh, con
   bool scales, const ExecutionContext& context)
 {
   const TriangleTree tree(mesh.GetTriangles(), points);
-  Eigen::RowVector3d center = Eigen::RowVector3d::Zero();
-  const std::vector<int> used = UsedVertices(mesh);
-  for (const int v : used)
-  {
-    center += points.row(v) / static_cast<double>(used.size());
-  }
+  const Points surface = points(UsedVertices(mesh), Eigen::all);
+  // As large as the surface from the start: what is much smaller has all its places on one spot.
+  const double extent = Extent(from);
+  const double scale = scales && extent > 0.0 ? Extent(surface) / extent : 1.0;
   Eigen::Matrix4d alignment = Eigen::Matrix4d::Identity();
-  alignment.topRightCorner<3, 1>() = (center - from.colwise().mean()).transpose();
+  alignment.topLeftCorner<3, 3>() *= scale;
+  alignment.topRightCorner<3, 1>() =
+    (surface.colwise().mean() - scale * from.colwise().mean()).transpose();
   Points moving = Moved(Sample(from), alignment);
   for (int i = 0; i < Iterations; ++i)
   {
@@ -88,7 +88,8 @@ Eigen::Matrix4d AlignToSurface(const Points& from, const TriangleMesh& mesh, con
     const Points places = ClosestPoints(tree, mesh.GetTriangles(), points, moving);
     const Eigen::Matrix4d step = Fit(moving, places, scales);
     const Points next = Moved(moving, step);
-    const bool hasArrived = (next - moving).norm() <= Rest * Extent(next);
+    const double moved = (next - moving).norm() / std::sqrt(static_cast<double>(next.rows()));
+    const bool hasArrived = moved <= Rest * Extent(next);
     moving = next;
     alignment = step * alignment;
     if (hasArrived)
