@@ -112,9 +112,12 @@ Points PositionsAt(const MorphPlace& at, vtkPolyData* first, const MorphOptions&
     run.Warn(prepared.Volume->GetWarning());
     run.Warn(prepared.Volume->Close(at.GetParameter(), positions));
   }
-  const Surface surface = prepared.SurfaceAt(0);
-  run.Warn(DescribePartedCopies(first, surface, positions,
-    "choose Method Linear, which keeps them together, or one of the deformations."));
+  // A linear morph keeps copies together, unless their parameters differ.
+  if (options.NeedsPlacement || at.IsLocal())
+  {
+    run.Warn(DescribePartedCopies(first, prepared.SurfaceAt(0), positions,
+      "choose Method Linear, which keeps them together, or one of the deformations."));
+  }
   return positions;
 }
 

@@ -42,13 +42,26 @@ bool WriteCoordinates(const Surface& surface, const Points& positions, vtkDataAr
       for (int v = begin; v < end; ++v)
       {
         Real* point = to + 3 * static_cast<std::size_t>(v);
-        const bool hasMoved = mesh.IsUsed(v) && positions.row(v) != rest.row(v);
-        for (int c = 0; c < 3; ++c)
+        if (mesh.IsUsed(v) && positions.row(v) != rest.row(v))
         {
-          point[c] = hasMoved ? static_cast<Real>(positions(v, c) + surface.Origin[c])
-            : from            ? from[3 * static_cast<std::size_t>(v) + c]
-                              : static_cast<Real>(input->GetComponent(v, c));
-          isFiniteHere = isFiniteHere && (!hasMoved || std::isfinite(point[c]));
+          for (int c = 0; c < 3; ++c)
+          {
+            point[c] = static_cast<Real>(positions(v, c) + surface.Origin[c]);
+          }
+          // x - x is 0 unless x is infinite or NaN: branches would cost as much as writing.
+          isFiniteHere &=
+            (point[0] - point[0]) + (point[1] - point[1]) + (point[2] - point[2]) == Real(0);
+        }
+        else if (from)
+        {
+          std::copy_n(from + 3 * static_cast<std::size_t>(v), 3, point);
+        }
+        else
+        {
+          for (int c = 0; c < 3; ++c)
+          {
+            point[c] = static_cast<Real>(input->GetComponent(v, c));
+          }
         }
       }
       if (!isFiniteHere)

@@ -62,27 +62,46 @@ double RingRadius(const TriangleMesh& mesh, const Points& points, int v)
 Eigen::Matrix3d FitChange(const TriangleMesh& mesh, const Points& reference,
   const Eigen::RowVector3d& normal, const Points& displacements, int v)
 {
-  const auto edge = [&](const Points& points, int w) -> Eigen::Vector3d
-  { return points.row(w) - points.row(v); };
+  struct Edge
+  {
+    Eigen::Vector3d Before;
+    Eigen::Vector3d Change;
+    Eigen::Vector3d After;
+  };
+  const auto edgeAt = [&](int d)
+  {
+    const int w = mesh.Neighbor(d);
+    Edge edge;
+    edge.Before = reference.row(w) - reference.row(v);
+    edge.Change = displacements.row(w) - displacements.row(v);
+    edge.After = edge.Before + edge.Change;
+    return edge;
+  };
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   Eigen::Vector3d areaVector = Eigen::Vector3d::Zero();
   double size = 0.0;
   double squaredEdges = 0.0;
   bool isStill = true;
-  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  const int begin = mesh.RingBegin(v);
+  const int end = mesh.RingEnd(v);
+  const Edge first = begin < end ? edgeAt(begin) : Edge();
+  Edge edge = first;
+  for (int d = begin; d < end; ++d)
   {
-    const Eigen::Vector3d before = edge(reference, mesh.Neighbor(d));
-    const Eigen::Vector3d change = edge(displacements, mesh.Neighbor(d));
-    const Eigen::Vector3d after = before + change;
-    covariance += after * before.transpose();
-    size += std::sqrt(before.squaredNorm() * after.squaredNorm());
-    squaredEdges += after.squaredNorm();
-    isStill = isStill && change.isZero(0.0);
-    if (mesh.LeftTriangle(d) >= 0)
+    covariance += edge.After * edge.Before.transpose();
+    const double squaredAfter = edge.After.squaredNorm();
+    size += std::sqrt(edge.Before.squaredNorm() * squaredAfter);
+    squaredEdges += squaredAfter;
+    isStill = isStill && edge.Change.isZero(0.0);
+    // Nearly always the next one in the list, which each triangle shares with the loop.
+    const Edge following = d + 1 < end ? edgeAt(d + 1) : first;
+    const int next = mesh.NextAround(v, d);
+    if (next >= 0)
     {
-      const int next = mesh.Opposite(d);
-      areaVector += after.cross(edge(reference, next) + edge(displacements, next));
+      const bool isFollowing = next == (d + 1 < end ? d + 1 : begin);
+      areaVector += edge.After.cross(isFollowing ? following.After : edgeAt(next).After);
     }
+    edge = following;
   }
   if (isStill || !(size > 0.0))
   {
