@@ -14,7 +14,7 @@ namespace
 /// The boundary of the triangles so far: directed edges in loops. What is on their left is
 /// not known while they are open, nothing at the border of the surface, and a triangle when
 /// they are closed, which are in no loop.
-struct Front
+struct CutBorder
 {
   enum class State : char
   {
@@ -90,7 +90,7 @@ public:
   {
   }
 
-  Step Look(const Front& front, int gate) const
+  Step Look(const CutBorder& front, int gate) const
   {
     const int edge = this->DirectedEdges[gate];
     if (this->Mesh.LeftTriangle(edge) < 0)
@@ -158,7 +158,7 @@ private:
   /// A vertex may be on the front several times: the edge that leaves it where the wedge of the
   /// triangle on the left of `edge` ends. The wedge is searched to both sides, as one may end
   /// at the border of the surface.
-  int FindJunction(const Front& front, int edge) const
+  int FindJunction(const CutBorder& front, int edge) const
   {
     int inwards = this->Mesh.Next(edge); // a -> c, then further ones to c
     while (this->Mesh.LeftTriangle(inwards) >= 0 && !this->IsConqueredLeft(inwards))
@@ -195,10 +195,10 @@ public:
   {
   }
 
-  Step Code(const Front& front, int gate, const std::vector<int>& valences, const Step& step)
+  Step Code(const CutBorder& front, int gate, const std::vector<int>& valences, const Step& step)
   {
     const auto isBorder = [&front](int edge)
-    { return front.Edges[edge].Is == Front::State::Border ? 1 : 0; };
+    { return front.Edges[edge].Is == CutBorder::State::Border ? 1 : 0; };
     const int context = 2 * isBorder(front.Before(gate)) + isBorder(front.After(gate));
     if (this->TheCoder.Code(this->Borders[context], step.Is == Step::Kind::Border))
     {
@@ -222,10 +222,10 @@ private:
 
   /// The junction is mostly near: the edge before the gate, or after the one after it, or a
   /// few steps further, so that a small piece is cut off. `junction` is -1 in a decoder.
-  int CodeJunction(const Front& front, int gate, int around, int junction)
+  int CodeJunction(const CutBorder& front, int gate, int around, int junction)
   {
-    const int steps[2] = { StepsTo(front, front.Before(gate), &Front::Before, junction),
-      StepsTo(front, front.After(front.After(gate)), &Front::After, junction) };
+    const int steps[2] = { StepsTo(front, front.Before(gate), &CutBorder::Before, junction),
+      StepsTo(front, front.After(front.After(gate)), &CutBorder::After, junction) };
     const bool isAfter = this->TheCoder.Code(this->Sides[around], steps[1] < steps[0]);
     int edge = isAfter ? front.After(front.After(gate)) : front.Before(gate);
     for (int step = 0; step < MostSteps; ++step)
@@ -244,17 +244,18 @@ private:
       front.Size() - this->Integers.Code(this->Lengths, this->Sign, front.Size() - junction));
   }
 
-  static int Checked(const Front& front, int gate, int junction)
+  static int Checked(const CutBorder& front, int gate, int junction)
   {
     if (junction < 0 || junction >= front.Size() || junction == gate ||
-      front.Edges[junction].Is == Front::State::Closed)
+      front.Edges[junction].Is == CutBorder::State::Closed)
     {
       throw Error(ErrorCode::BadInput, "the connectivity cannot be decoded");
     }
     return junction;
   }
 
-  static int StepsTo(const Front& front, int edge, int (Front::*next)(int) const, int junction)
+  static int StepsTo(
+    const CutBorder& front, int edge, int (CutBorder::*next)(int) const, int junction)
   {
     int steps = 0;
     for (; steps < MostSteps && edge != junction; ++steps)
@@ -339,20 +340,20 @@ private:
 
   void Advance(int gate)
   {
-    Front& front = this->TheFront;
+    CutBorder& front = this->TheFront;
     const Step step = this->Steps.Code(
       front, gate, this->Valences, this->TheGuide ? this->TheGuide->Look(front, gate) : Step());
     const int before = front.Before(gate);
     if (step.Is == Step::Kind::Border)
     {
-      front.Edges[gate].Is = Front::State::Border;
+      front.Edges[gate].Is = CutBorder::State::Border;
       this->Gates.push_back(before);
       return;
     }
     const int from = front.From(gate);
     const int to = front.To(gate);
     const int after = front.After(gate);
-    front.Edges[gate].Is = Front::State::Closed;
+    front.Edges[gate].Is = CutBorder::State::Closed;
     const bool isNew = step.Is == Step::Kind::New;
     if (isNew && this->TheGuide)
     {
@@ -394,7 +395,7 @@ private:
 
   StepCoder<Coder> Steps;
   Guide* TheGuide;
-  Front TheFront;
+  CutBorder TheFront;
   std::vector<int> Gates;    // those not yet passed, the last comes first
   std::vector<int> Valences; // how many triangles a vertex has
   Triangles Result;
