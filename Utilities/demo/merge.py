@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sews a scanned head onto a dinosaur, tubes with reliefs that fade into each other, and a ball
-between four tubes; takes the coating off a scan and puts it on again.
+"""Sews a scanned head onto a dinosaur, wherever it comes from and where it is placed, tubes with
+reliefs that fade into each other, and a ball between four tubes; takes the coating off a scan, and
+puts it on again and on another one.
 The first is like the figures of Fu, Au and Tai, Effective Derivation of Similarity Transformations for
 Implicit Laplacian Mesh Editing (2007), section 5. Run by Utilities/demo.sh --merge in
 pvpython; the argument is the build folder. merge.png, a sheet of all, appears in its
@@ -15,7 +16,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_ID_TYPE, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPlane, vtkPolyData
 from vtkmodules.vtkFiltersCore import (vtkAppendPolyData, vtkCleanPolyData, vtkClipPolyData,
-                                       vtkPolyDataConnectivityFilter, vtkTriangleFilter)
+                                       vtkMassProperties, vtkPolyDataConnectivityFilter,
+                                       vtkTriangleFilter)
 from vtkmodules.vtkFiltersSources import vtkTessellatedBoxSource
 
 from pictures import (Panel, camera_for, draw, heading, one_below_the_other, side_by_side,
@@ -33,6 +35,16 @@ KEYS = (((.7024, -4.0345, -15), (-.0057, -.3284, 1.1572)),
 
 def points_of(surface):
     return vtk_to_numpy(surface.GetPoints().GetData())
+
+
+def triangles_of(surface):
+    return vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+
+
+def above(surface, height):
+    """The points above a height, for cameras that look at these."""
+    points = points_of(surface)
+    return points[points[:, 2] > height]
 
 
 def with_handles(surface, values=None):
@@ -53,7 +65,7 @@ def cut(surface, origin, normal):
     snapped = vtkPolyData()
     snapped.DeepCopy(surface)
     points = points_of(snapped)
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    triangles = triangles_of(surface)
     edges = numpy.linalg.norm(points[triangles] - points[numpy.roll(triangles, 1, axis=1)], axis=2)
     unit = numpy.array(normal) / numpy.linalg.norm(normal)
     heights = (points - numpy.array(origin)) @ unit
@@ -96,6 +108,30 @@ def boundary_points(surface):
     return vtk_to_numpy(loops.GetOutput().GetPointData().GetArray("OriginalPointIds"))
 
 
+def edge_change(source, output):
+    """Root mean square change of the source's edges in the output beside their mean: of those
+    whose ends are not on the seam."""
+    data = output.GetPointData()
+    kept = vtk_to_numpy(data.GetArray("MergeOrigin")) == 1
+    places = numpy.full((source.GetNumberOfPoints(), 3), numpy.nan)
+    places[vtk_to_numpy(data.GetArray("OriginalPointIds"))[kept]] = points_of(output)[kept]
+    corners = triangles_of(source)
+    edges = numpy.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    before, after = (numpy.linalg.norm(p[edges[:, 1]] - p[edges[:, 0]], axis=1)
+                     for p in (points_of(source), places))
+    ratios = (after / before)[~numpy.isnan(after)]
+    return numpy.sqrt(numpy.mean((ratios / ratios.mean() - 1) ** 2))
+
+
+def volume(surface):
+    """As text; "open" where a surface encloses none."""
+    if len(boundary_points(surface)):
+        return "open"
+    measures = vtkMassProperties()
+    measures.SetInputData(surface)
+    return "%.3g" % measures.GetVolume()
+
+
 def merged(title, target, source, **values):
     """A panel of two surfaces that are sewn together, and a line of the table."""
     merge = vtkMeshMerge()
@@ -109,7 +145,9 @@ def merged(title, target, source, **values):
     output = merge.GetOutput()
     angles = "seam %.1f degrees, %.1f at most" % (
         merge.GetSeamAngleMean(), merge.GetSeamAngleMaximum())
-    print("  %-44s%9d points   %s   %.2f s" % (title, output.GetNumberOfPoints(), angles, seconds))
+    print("  | %s | %s | %.1f | %.1f | %.3f | %s | %.2f |" % (
+        title, format(output.GetNumberOfPoints(), ","), merge.GetSeamAngleMean(),
+        merge.GetSeamAngleMaximum(), edge_change(source, output), volume(output), seconds))
     origins = vtk_to_numpy(output.GetPointData().GetArray("MergeOrigin"))
     return Panel(title, angles, with_handles(output, numpy.where(origins == 1, 2, 0)))
 
@@ -123,20 +161,78 @@ def row(title, panels, view_from, view_up, focus=None):
         [heading(title, (len(panels) * SIZE[0], HEADING)), side_by_side(pictures)])
 
 
-def head_on_dinosaur():
+def head_and_dinosaur():
+    """Both with their keys."""
     head = cut(cartan_testing.read_off("mannequin-devil"), (0, 0, -15), (0, 0, 1))
     dinosaur = cut(cartan_testing.read_off("dino"), (0, -.9, .9), (0, .45, -1))
     set_keys(head, [key[0] for key in KEYS])
     set_keys(dinosaur, [key[1] for key in KEYS])
-    print("A head on a dinosaur")
+    return head, dinosaur
+
+
+def head_on_dinosaur():
+    head, dinosaur = head_and_dinosaur()
     whole = merged("sewn together", dinosaur, head)
-    faired = merged("the seam and two rings made smooth", dinosaur, head, SeamFairing=2)
+    faired = merged("seam and two rings smooth", dinosaur, head, SeamFairing=2)
+    blended = merged("details blended, two rings", dinosaur, head, SeamFairing=2,
+                     FairingMethod=vtkMeshMerge.DELTA_BLEND)
     faded = merged("transplanted: a transition of .1", dinosaur, head, TransitionWidth=0.1)
-    parts = [Panel("target", f"{dinosaur.GetNumberOfPoints():,} points", with_handles(dinosaur)),
-             Panel("source", f"{head.GetNumberOfPoints():,} points",
-                   with_handles(head, numpy.full(head.GetNumberOfPoints(), 2)))]
-    return row("A head on a dinosaur, wherever it comes from", [parts[0], whole, faired, faded],
-               (1, -0.4, 0.35), (0, 0, 1))
+    return row("A head on a dinosaur, wherever it comes from", [whole, faired, blended, faded],
+               (1, -0.4, 0.35), (0, 0, 1), above(whole.surface, 0.85))
+
+
+def similarity(before, after):
+    """Scale, rotation and shift that take points closest to others."""
+    middle, goal = before.mean(axis=0), after.mean(axis=0)
+    left, stretches, right = numpy.linalg.svd((after - goal).T @ (before - middle))
+    signs = numpy.array([1, 1, numpy.sign(numpy.linalg.det(left @ right))])
+    scale = (stretches * signs).sum() / ((before - middle) ** 2).sum()
+    rotation = left @ numpy.diag(signs) @ right
+    return scale, rotation, goal - scale * rotation @ middle
+
+
+def placed_head(head, dinosaur):
+    """The head where it fits on the dinosaur, but larger, turned to the side and lifted, its
+    upper part marked as a handle."""
+    merge = vtkMeshMerge()
+    merge.SetInputData(dinosaur)
+    merge.SetSourceData(head)
+    merge.Update()
+    data = merge.GetOutput().GetPointData()
+    kept = vtk_to_numpy(data.GetArray("MergeOrigin")) == 1
+    ids = vtk_to_numpy(data.GetArray("OriginalPointIds"))[kept]
+    scale, rotation, shift = similarity(points_of(head)[ids], points_of(merge.GetOutput())[kept])
+    fitted = scale * points_of(head) @ rotation.T + shift
+    loop = fitted[boundary_points(head)].mean(axis=0)
+    up = rotation[:, 2]
+    angle = numpy.radians(35)
+    cross = numpy.cross(up, numpy.eye(3)).T
+    turn = numpy.eye(3) + numpy.sin(angle) * cross + (1 - numpy.cos(angle)) * cross @ cross
+    result = with_handles(head, numpy.where(points_of(head)[:, 2] > -4, 1, 0))
+    places = vtkPoints()
+    places.SetData(numpy_to_vtk(
+        loop + 1.35 * (fitted - loop) @ turn.T + 0.12 * up, deep=True))
+    result.SetPoints(places)
+    return result
+
+
+def configurations():
+    """The same head and place, which counts or not."""
+    head, dinosaur = head_and_dinosaur()
+    placed = placed_head(head, dinosaur)
+    count = dinosaur.GetNumberOfPoints()
+    together = surface_of(
+        numpy.concatenate([points_of(dinosaur), points_of(placed)]),
+        numpy.concatenate([triangles_of(dinosaur), count + triangles_of(placed)]))
+    together = with_handles(
+        together, numpy.where(numpy.arange(together.GetNumberOfPoints()) < count, 0, 2))
+    dependent = {"Configuration": vtkMeshMerge.DEPENDENT}
+    panels = [Panel("before", "larger, turned, lifted", together),
+              merged("independent", dinosaur, placed),
+              merged("dependent: the face is held", dinosaur, placed, **dependent),
+              merged("dependent, and smooth", dinosaur, placed, SeamFairing=2, **dependent)]
+    return row("Whether the place of the source counts", panels, (1, -0.4, 0.35), (0, 0, 1),
+               above(together, 0.85))
 
 
 def surface_of(points, triangles):
@@ -186,7 +282,6 @@ def transition():
     source = relief(140, 110, 5, 5, 40)
     number_point(target, 160 * 119)
     number_point(source, 0)
-    print("Two reliefs")
     panels = [Panel("target", "", with_handles(target)),
               Panel("source", "", with_handles(source, numpy.full(140 * 110, 2))),
               merged("sewn at their loops", target, source),
@@ -204,7 +299,7 @@ def ball_with_openings(count):
     clean.SetInputConnection(box.GetOutputPort())
     clean.Update()
     points = points_of(clean.GetOutput()).astype(float)
-    triangles = vtk_to_numpy(clean.GetOutput().GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    triangles = triangles_of(clean.GetOutput())
     # Squares around the middle of a side become rings around it, and the innermost ones go.
     inside = numpy.zeros(len(points), dtype=bool)
     for axis in (0, 1):
@@ -238,7 +333,6 @@ def branches():
     targets.Update()
     target = targets.GetOutput()
     # The outer ends stay open: the inner ones have keys, and so have the ball's.
-    print("Four pairs of loops")
     centers = [1.05 * numpy.array([numpy.cos(a), numpy.sin(a), 0])
                for a in numpy.radians((0, 90, 180, 270))]
     set_keys(source, [center + (0, 0, 1) for center in centers])
@@ -273,10 +367,28 @@ def coating():
     return row("The armadillo's coating", panels, (0.3, 0.15, -1), (0, 1, 0))
 
 
+def coating_of_another():
+    """The armadillo's coating on a bear of another shape, size and connectivity."""
+    source, target = cartan_testing.read_off("armadillo"), cartan_testing.read_off("bear")
+    transfer = vtkCoatingTransfer()
+    transfer.SetInputData(target)
+    transfer.SetSourceData(source)
+    transfer.SetSmoothing(16.0)
+    panels = [Panel("source", f"{source.GetNumberOfPoints():,} points", with_handles(source)),
+              Panel("target", f"{target.GetNumberOfPoints():,} points", with_handles(target))]
+    for strength, title in ((1.0, "coated"), (2.0, "twice as high")):
+        transfer.SetStrength(strength)
+        transfer.Update()
+        panels.append(Panel(title, "", with_handles(transfer.GetOutput())))
+    return row("The armadillo's coating on a bear", panels, (0.3, 0.15, 1), (0, 1, 0))
+
+
 def main(build):
     folder = os.path.join(build, "demo")
     os.makedirs(folder, exist_ok=True)
-    write_sheet(one_below_the_other([head_on_dinosaur(), transition(), branches(), coating()]),
+    print("  | | points | seam, mean | seam, largest | edges | volume | seconds |")
+    write_sheet(one_below_the_other([head_on_dinosaur(), configurations(), transition(),
+                                     branches(), coating(), coating_of_another()]),
                 folder, "merge")
 
 
