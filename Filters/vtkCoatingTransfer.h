@@ -95,8 +95,8 @@ public:
   /**
    * How the target is aligned with the source's base before closest places are found: not,
    * or by the rigid motion or similarity that iterated closest points find from where both
-   * centers meet. With surfaces that are turned by more than about 45 degrees to each other
-   * use KEYS. Default: SIMILARITY.
+   * centers meet and, with SIMILARITY, both sizes are equal. With surfaces that are turned by more
+   * than about 45 degrees to each other use KEYS. Default: SIMILARITY.
    */
   vtkSetClampMacro(Alignment, int, AS_THEY_LIE, SIMILARITY);
   vtkGetMacro(Alignment, int);

@@ -4,6 +4,7 @@
 
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Base/Constants.h"
+#include "Kernel/Differential/RotationFit.h"
 #include "Kernel/Merging/BoundaryFrames.h"
 #include "Kernel/Mesh/Geometry.h"
 
@@ -268,6 +269,16 @@ TEST(MeshMerge, SewsATubeThatWasCutInTwo)
   const double distance = (merged.Fit.Positions - expected).rowwise().norm().maxCoeff();
   ShowFigure("largest distance, of a size of 3", distance);
   EXPECT_LT(distance, 0.0046 * 3.0);
+  const cartan::Matrices rotations =
+    cartan::FitRotations(MakeMesh(source), expected, merged.Fit.Positions);
+  double largest = 0.0;
+  for (Eigen::Index v = 0; v < rotations.rows(); ++v)
+  {
+    const double cosine = 0.5 * (cartan::MatrixAt(rotations, v).trace() - 1.0);
+    largest = std::max(largest, std::acos(std::min(1.0, std::max(-1.0, cosine))));
+  }
+  ShowFigure("largest rotation, degrees", largest / Degrees);
+  EXPECT_LT(largest, 2.7 * Degrees);
 }
 
 TEST(MeshMerge, TurnsBoundariesWhenFeaturesAreHeld)

@@ -138,8 +138,13 @@ TEST_F(CoatingTransfer, LaplaciansNeedTheSameTriangles)
 
 TEST_F(CoatingTransfer, ReachesOtherConnectivities)
 {
-  const shapes::Shape base = shapes::Icosphere(4); // 2562 points
-  const shapes::Shape target = shapes::UvSphere(40, 26);
+  // 4052 points with their poles on another axis, and 1002.
+  shapes::Shape base = shapes::UvSphere(90, 45);
+  const cartan::Points before = base.Positions;
+  base.Positions.col(0) = before.col(1);
+  base.Positions.col(1) = before.col(2);
+  base.Positions.col(2) = before.col(0);
+  const shapes::Shape target = shapes::UvSphere(40, 25);
   this->Connect(target, WithRelief(base), base);
   this->Filter->SetAlignmentToAsTheyLie();
   const cartan::Points result = this->Result();
