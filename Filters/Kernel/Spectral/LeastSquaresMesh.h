@@ -17,7 +17,7 @@ class AnchoredSystem;
 enum class AnchorSelection
 {
   FarthestPoint, ///< spread over the surface, see FarthestPoints
-  Greedy         ///< one in each component, then always where the error is largest
+  Greedy         ///< one in each component, then always where the error around is largest
 };
 
 /// The smoothest surface of a connectivity that passes through a few anchors (Sorkine and
