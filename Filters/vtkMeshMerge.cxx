@@ -58,10 +58,9 @@ struct vtkMeshMerge::Sewn
   cartan::FittedSource Fit;
   cartan::JoinedSurface Joined;
   cartan::TriangleMesh Mesh;
-  cartan::Points Positions; ///< from the target's origin
-  cartan::Fading Fading;    ///< empty without a transition
-  /// The target's points, with those where a transition cuts it.
-  std::shared_ptr<const cartan::Points> TargetPoints;
+  cartan::Points Positions;                           ///< from the target's origin
+  cartan::Fading Fading;                              ///< empty without a transition
+  std::shared_ptr<const cartan::Points> TargetPoints; ///< with those where it was cut
 };
 
 namespace
@@ -105,6 +104,7 @@ void vtkMeshMerge::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Configuration: " << this->Configuration << "\n";
   os << indent << "BendWidth: " << this->BendWidth << "\n";
   os << indent << "TransitionWidth: " << this->TransitionWidth << "\n";
+  os << indent << "SourceTransitionWidth: " << this->SourceTransitionWidth << "\n";
   os << indent << "SeamFairing: " << this->SeamFairing << "\n";
   os << indent << "FairingMethod: " << this->FairingMethod << "\n";
   os << indent << "BoundaryKeyArrayName: " << this->BoundaryKeyArrayName << "\n";
@@ -384,16 +384,17 @@ vtkMeshMerge::Sewn vtkMeshMerge::Sew(
     join(sides.Target.Surface, paired.Pairs, paired.Keys);
     return sewn;
   }
-  // The source's loops name its pairs.
+  cartan::TransitionWidths widths{ this->TransitionWidth, this->SourceTransitionWidth };
+  widths.Source = widths.Source > 0.0 ? widths.Source : widths.Target;
   cartan::ContentKey key =
     WithLoops(WithLoops(sides.TargetSurface->Key, paired.Pairs, &cartan::LoopPair::Target),
       paired.Pairs, &cartan::LoopPair::Source);
-  key.AddBytes(&this->TransitionWidth, sizeof(this->TransitionWidth));
+  key.AddBytes(&widths, sizeof(widths));
   const auto transition = run.Keep<cartan::Transition>(key,
     [&]
     {
       return std::make_unique<cartan::Transition>(
-        sides.Target.Surface, paired.Pairs, this->TransitionWidth, context.Part(0.25, 0.3));
+        sides.Target.Surface, paired.Pairs, widths, context.Part(0.25, 0.3));
     });
   const cartan::CutSurface& cut = transition->GetCut();
   join({ cut.Mesh, cut.Positions }, transition->GetPairs(), transition->MoveKeys(paired.Keys));

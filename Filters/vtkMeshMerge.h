@@ -124,6 +124,15 @@ public:
 
   ///@{
   /**
+   * With a TransitionWidth, the width of the source's band where that is another one, >= 0.
+   * 0: the same. Default: 0.
+   */
+  vtkSetClampMacro(SourceTransitionWidth, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(SourceTransitionWidth, double);
+  ///@}
+
+  ///@{
+  /**
    * Whether the seam and so many rings of points around it, on both sides, are made smooth
    * by the FairingMethod. 0: not, and the target keeps its place everywhere. Default: 0.
    */
@@ -259,6 +268,7 @@ private:
   int Configuration = INDEPENDENT;
   double BendWidth = 0.0;
   double TransitionWidth = 0.0;
+  double SourceTransitionWidth = 0.0;
   int SeamFairing = 0;
   int FairingMethod = THIN_PLATE;
   int NumberOfPairs = 0;

@@ -118,7 +118,7 @@ void Sew(const MeshMerge& merge, const MergeInput& target, const MergeInput& sou
   transition += Seconds(
     [&]
     {
-      const Transition bands(target, paired.Pairs, 0.5);
+      const Transition bands(target, paired.Pairs, { 0.5, 0.5 });
       const CutSurface& cut = bands.GetCut();
       fitted =
         merge.Fit({ cut.Mesh, cut.Positions }, bands.GetPairs(), bands.MoveKeys(paired.Keys));

@@ -343,7 +343,12 @@ inline Subject Merge()
   return Make<Filter>("MeshMerge",
     { Half(0), Half(1), Enumeration<Filter>(2, &Filter::SetConfiguration),
       Number<Filter>(&Filter::SetBendWidth, { 0.0, 0.5 }),
-      Number<Filter>(&Filter::SetTransitionWidth, { 0.0, 0.3, 0.1 }),
+      Of<Filter>(3,
+        [](Filter* f, int value)
+        {
+          f->SetTransitionWidth(0.3 * value / (value + 1.0));
+          f->SetSourceTransitionWidth(value == 2 ? 0.1 : 0.0);
+        }),
       Of<Filter>(3, [](Filter* f, int value) { f->SetSeamFairing(value); }),
       Enumeration<Filter>(2, &Filter::SetFairingMethod),
       Of<Filter>(3,

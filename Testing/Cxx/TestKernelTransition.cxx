@@ -33,8 +33,8 @@ struct Faded : Merged
   cartan::Fading Fading;
 };
 
-Faded Fade(const Shape& target, const Shape& source, const Keys& keys, double width,
-  const std::vector<cartan::SourceHold>& holds = {})
+Faded Fade(const Shape& target, const Shape& source, const Keys& keys,
+  const cartan::TransitionWidths& widths, const std::vector<cartan::SourceHold>& holds = {})
 {
   Sides sides(target, source, keys);
   const cartan::PairedLoops paired =
@@ -44,7 +44,7 @@ Faded Fade(const Shape& target, const Shape& source, const Keys& keys, double wi
   {
     loops.push_back(pair.Source);
   }
-  const cartan::Transition transition(sides.Target.Surface, paired.Pairs, width);
+  const cartan::Transition transition(sides.Target.Surface, paired.Pairs, widths);
   const cartan::CutSurface& cut = transition.GetCut();
   const cartan::MeshMerge merge(sides.Source.Surface, loops, holds);
   Faded faded;
@@ -158,7 +158,7 @@ TEST(Transition, FadesOneReliefIntoTheOther)
   const Shape target = Relief(64, 48, 0.0, 4.0, 8, Height);
   Shape source = Relief(72, 48, 2.0, 4.0, 5, Height);
   source.Positions = Transformed(source.Positions, 0.4, RandomRigidMotion(4, 3.0));
-  const Faded faded = Fade(target, source, { { 0, target.NumberOfVertices() - 64 } }, 2.0);
+  const Faded faded = Fade(target, source, { { 0, target.NumberOfVertices() - 64 } }, { 2.0, 2.0 });
   EXPECT_EQ(cartan::FindBoundaryLoops(faded.Mesh).size(), 2u);
   EXPECT_EQ(faded.EulerNumber(), 0);
   Eigen::Vector2d before(Height, 0.0);
@@ -187,7 +187,7 @@ TEST(Transition, ChangesNothingWhereBothAgree)
   const Shape target = OpenCylinder(32, 30, 1.0, 4.0);
   Shape source = target;
   source.Positions = Transformed(target.Positions, 0.3, RandomRigidMotion(2, 3.0));
-  const Faded faded = Fade(target, source, { { 0, target.NumberOfVertices() - 32 } }, 1.6);
+  const Faded faded = Fade(target, source, { { 0, target.NumberOfVertices() - 32 } }, { 1.6, 1.6 });
   int count = 0;
   double farthest = 0.0;
   for (int v = 0; v < faded.Mesh.NumberOfVertices(); ++v)
@@ -205,6 +205,38 @@ TEST(Transition, ChangesNothingWhereBothAgree)
   EXPECT_EQ(count, source.NumberOfVertices());
 }
 
+TEST(Transition, HasAWidthOnEachSide)
+{
+  // A band of 1 on the target becomes one of 2 on the source.
+  constexpr double Height = 0.03;
+  const Shape target = Relief(64, 48, 0.0, 4.0, 8, Height);
+  const Shape source = Relief(72, 48, 2.0, 4.0, 5, Height);
+  const Faded faded = Fade(target, source, { { 0, target.NumberOfVertices() - 64 } }, { 1.0, 2.0 });
+  EXPECT_EQ(cartan::FindBoundaryLoops(faded.Mesh).size(), 2u);
+  // The seam is at z = 3, the band's end at 5.
+  const Eigen::Vector2d below = WaveHeights(faded, { 8, 5 }, 2.0, 3.0) / Height;
+  EXPECT_NEAR(below[0], 1.0, 0.01);
+  const Eigen::Vector2d middle = WaveHeights(faded, { 8, 5 }, 3.9, 4.1) / Height;
+  EXPECT_NEAR(middle[0], 0.5, 0.1);
+  EXPECT_NEAR(middle[1], 0.5, 0.1);
+  const Eigen::Vector2d above = WaveHeights(faded, { 8, 5 }, 5.0, 6.0) / Height;
+  EXPECT_NEAR(above[0], 0.0, 0.02);
+  EXPECT_NEAR(above[1], 1.0, 0.1);
+  // Halfway through the source's band is halfway through the target's.
+  double farthest = 0.0;
+  for (int v = 0; v < faded.Mesh.NumberOfVertices(); ++v)
+  {
+    const double part = faded.Fading.SourceParts[v];
+    if (part > 0.0 && part < 1.0)
+    {
+      const double there =
+        cartan::AtPlaces(target.Positions, { faded.Fading.TargetPlaces[v] })(0, 2);
+      farthest = std::max(farthest, std::abs(there - 3.0 - 0.5 * (faded.Positions(v, 2) - 3.0)));
+    }
+  }
+  EXPECT_LT(farthest, 0.1); // an edge is .083 long
+}
+
 TEST(Transition, RefusesHeldPoints)
 {
   const Shape target = OpenCylinder(24, 20, 1.0, 2.0);
@@ -216,7 +248,7 @@ TEST(Transition, RefusesHeldPoints)
   const std::string advice = Advice("unmark them, or raise BendWidth where that holds them.");
   try
   {
-    Fade(target, source, keys, 1.0, holds);
+    Fade(target, source, keys, { 1.0, 1.0 }, holds);
     FAIL();
   }
   catch (const cartan::Error& error)
@@ -224,7 +256,26 @@ TEST(Transition, RefusesHeldPoints)
     EXPECT_NE(std::string(error.what()).find(advice), std::string::npos) << error.what();
   }
   std::fill(holds.begin(), holds.begin() + 12 * 24, cartan::SourceHold::Free);
-  EXPECT_EQ(Fade(target, source, keys, 1.0, holds).EulerNumber(), 0);
+  EXPECT_EQ(Fade(target, source, keys, { 1.0, 1.0 }, holds).EulerNumber(), 0);
+}
+
+TEST(Transition, RefusesASourceWidthThatIsTooWide)
+{
+  const Shape target = Relief(24, 20, 0.0, 2.0, 4, 0.0);
+  const Shape source = Relief(24, 10, 0.0, 1.0, 4, 0.0);
+  const Keys keys = { { 0, target.NumberOfVertices() - 24 } };
+  const std::string advice =
+    Advice("Lower TransitionWidth, or SourceTransitionWidth where that is not 0.");
+  try
+  {
+    Fade(target, source, keys, { 0.5, 1.5 });
+    FAIL();
+  }
+  catch (const cartan::Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find(advice), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(cartan::FindBoundaryLoops(Fade(target, source, keys, { 0.5, 0.7 }).Mesh).size(), 2u);
 }
 
 TEST(Transition, RefusesWhatIsWiderThanTheSurface)
@@ -232,12 +283,12 @@ TEST(Transition, RefusesWhatIsWiderThanTheSurface)
   const Shape target = Relief(24, 20, 0.0, 2.0, 4, 0.0);
   const Shape source = Relief(24, 10, 0.0, 1.0, 4, 0.0);
   const Keys keys = { { 0, target.NumberOfVertices() - 24 } };
-  const std::string advice = Advice("Lower TransitionWidth.");
+  const std::string advice = Advice("Lower TransitionWidth");
   for (const auto& [width, role] : { std::make_pair(2.5, "target"), std::make_pair(1.5, "source") })
   {
     try
     {
-      Fade(target, source, keys, width);
+      Fade(target, source, keys, { width, width });
       FAIL() << width;
     }
     catch (const cartan::Error& error)
@@ -246,5 +297,5 @@ TEST(Transition, RefusesWhatIsWiderThanTheSurface)
       EXPECT_NE(std::string(error.what()).find(advice), std::string::npos) << error.what();
     }
   }
-  EXPECT_EQ(cartan::FindBoundaryLoops(Fade(target, source, keys, 0.5).Mesh).size(), 2u);
+  EXPECT_EQ(cartan::FindBoundaryLoops(Fade(target, source, keys, { 0.5, 0.5 }).Mesh).size(), 2u);
 }

@@ -120,15 +120,15 @@ void NameWholeFaces(const CutSurface& cut, JoinedSurface& joined)
   }
 }
 
-Transition::Transition(const MergeInput& target, const std::vector<LoopPair>& pairs, double width,
-  const ExecutionContext& context)
+Transition::Transition(const MergeInput& target, const std::vector<LoopPair>& pairs,
+  const TransitionWidths& widths, const ExecutionContext& context)
   : Target(target)
   , OldPairs(pairs)
   , Pairs(pairs)
-  , Width(width)
-  , Bands(FindBands(*target.Mesh, *target.Positions, LoopsOf(pairs, &LoopPair::Target), width,
-      "target", context.Part(0.0, 0.4)))
-  , Cut(CutBelow(*target.Mesh, *target.Positions, this->Bands.Distances, width))
+  , Widths(widths)
+  , Bands(FindBands(*target.Mesh, *target.Positions, LoopsOf(pairs, &LoopPair::Target),
+      widths.Target, "target", context.Part(0.0, 0.4)))
+  , Cut(CutBelow(*target.Mesh, *target.Positions, this->Bands.Distances, widths.Target))
 {
   for (std::size_t p = 0; p < pairs.size(); ++p)
   {
@@ -201,7 +201,8 @@ std::vector<SurfacePlace> Transition::TargetPlaces(
     const int v = band.Vertices[i];
     angles[static_cast<Eigen::Index>(i)] = band.Angles[v];
     // The source's loop is at the end of the target's band, and its band's end at the loop.
-    fromLoop[static_cast<Eigen::Index>(i)] = std::max(0.0, this->Width - distances[v]);
+    fromLoop[static_cast<Eigen::Index>(i)] =
+      this->Widths.Target * std::max(0.0, 1.0 - distances[v] / this->Widths.Source);
   }
   return PlacesInBand(this->Coordinates[pair], this->Bands.Distances, angles, fromLoop);
 }
@@ -220,7 +221,7 @@ Fading Transition::FindFading(const TriangleMesh& source, const FittedSource& fi
     {
       const int ofSource = joined.SourceVertices[v];
       joinedOfSource[ofSource] = v;
-      fading.SourceParts[v] = SmoothStep(bands.Distances[ofSource] / this->Width);
+      fading.SourceParts[v] = SmoothStep(bands.Distances[ofSource] / this->Widths.Source);
     }
   }
   for (std::size_t p = 0; p < this->Pairs.size(); ++p)
@@ -245,7 +246,7 @@ Fading Transition::Fade(const TriangleMesh& source, const FittedSource& fitted,
   Points& positions, const ExecutionContext& context) const
 {
   const TransitionBands bands = FindBands(source, fitted.Positions,
-    LoopsOf(this->Pairs, &LoopPair::Source), this->Width, "source", context.Part(0.0, 0.3));
+    LoopsOf(this->Pairs, &LoopPair::Source), this->Widths.Source, "source", context.Part(0.0, 0.3));
   RequireFree(bands, holds);
   Fading fading = this->FindFading(source, fitted, bands, joined);
   std::vector<int> region;

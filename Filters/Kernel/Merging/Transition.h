@@ -14,6 +14,14 @@ namespace cartan
 /// the target before it was cut.
 void NameWholeFaces(const CutSurface& cut, JoinedSurface& joined);
 
+/// How wide both bands are, over the target and over the source as it is fitted; > 0, in the
+/// target's length units. Details fade by the part of the source's width.
+struct TransitionWidths
+{
+  double Target;
+  double Source;
+};
+
 /// How the vertices of a joined surface fade from the target into the source.
 struct Fading
 {
@@ -24,7 +32,7 @@ struct Fading
 };
 
 /// Merging with overlapping transition regions (Fu, Au, Tai 2007, section 5.3): bands of
-/// one width along the loops of both surfaces come to lie on each other, and details fade
+/// given widths along the loops of both surfaces come to lie on each other, and details fade
 /// from the target's into the source's across them. The target is cut off at its band's
 /// end, so that the source's loop is sewn on there, and the source's band takes the
 /// place of the target's, with the source's triangles. Places belong together by
@@ -32,10 +40,10 @@ struct Fading
 class Transition
 {
 public:
-  /// `pairs` and `keys` are those of both surfaces' loops; `width` > 0 in the target's length
-  /// units. Throws Error(BadInput) where it is too wide for the target (FindBands).
-  Transition(const MergeInput& target, const std::vector<LoopPair>& pairs, double width,
-    const ExecutionContext& context = {});
+  /// `pairs` are those of both surfaces' loops. Throws Error(BadInput) where it is too wide
+  /// for the target (FindBands).
+  Transition(const MergeInput& target, const std::vector<LoopPair>& pairs,
+    const TransitionWidths& widths, const ExecutionContext& context = {});
 
   /// The target without its bands.
   const CutSurface& GetCut() const { return this->Cut; }
@@ -52,7 +60,7 @@ public:
   ///   min |M^-1 L x - (1 - t) M^-1 L x_T - t M^-1 L x_S|^2
   ///
   /// with the points outside the band given, x_S the fitted source, x_T the target's
-  /// points at the same angles and distances, and t rising smoothly from 0 at the
+  /// points at the same angles and parts of the widths, and t rising smoothly from 0 at the
   /// seam to 1 at the band's end. All with one operator, that of the joined surface:
   /// so where both agree, nothing changes. `holds` (empty or #V of the source) must be Free in
   /// the band, or Error(BadInput) is thrown, as where the band is too wide for the source.
@@ -74,7 +82,7 @@ private:
   MergeInput Target;
   std::vector<LoopPair> OldPairs;
   std::vector<LoopPair> Pairs;
-  double Width;
+  TransitionWidths Widths;
   TransitionBands Bands;
   std::vector<BandCoordinates> Coordinates; // of each pair's band on the target
   CutSurface Cut;

@@ -31,8 +31,9 @@ constexpr double Imprecision = 1e-12;
   throw Error(ErrorCode::BadInput,
     "A transition of " + std::to_string(width) + " is too wide for the " + role +
       ": from the loop of point " + std::to_string(vertex) +
-      " it reaches another boundary or another transition, or the surface ends. Lower "
-      "TransitionWidth.");
+      " it reaches another boundary or another transition, or the surface ends. " +
+      (role == "source" ? "Lower TransitionWidth, or SourceTransitionWidth where that is not 0."
+                        : "Lower TransitionWidth."));
 }
 
 double LongestEdge(const TriangleMesh& mesh, const Points& points)
