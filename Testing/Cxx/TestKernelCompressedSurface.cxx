@@ -138,9 +138,13 @@ TEST(ConnectivityCoder, KeepsSurfacesOfAnyTopology)
     EXPECT_EQ(TurnedTriangles(Renamed(order.Faces, order.Vertices)), TurnedTriangles(shape.Faces));
     const Bytes bytes =
       cartan::EncodeTriangles(TriangleMesh(shape.NumberOfVertices(), order.Faces));
-    EXPECT_EQ(
-      cartan::DecodeTriangles(bytes.data(), bytes.size(), static_cast<int>(shape.Faces.rows())),
+    EXPECT_EQ(cartan::DecodeTriangles(bytes.data(), bytes.size(),
+                static_cast<int>(shape.Faces.rows()), static_cast<std::size_t>(order.NumberOfUsed)),
       order.Faces);
+    EXPECT_THROW(
+      cartan::DecodeTriangles(bytes.data(), bytes.size(), static_cast<int>(shape.Faces.rows()),
+        static_cast<std::size_t>(order.NumberOfUsed) - 1),
+      cartan::Error);
   }
 }
 

@@ -204,6 +204,7 @@ struct Head
         this->Triangles / ByteWriter::MostTrianglesPerByte <= connectivitySize,
       "it cannot have as many triangles as it is said to have");
     Require(this->Used <= 3 * this->Triangles && this->Used <= this->Vertices &&
+        this->Vertices / ByteWriter::MostElementsPerByte <= fileSize &&
         this->Vertices - this->Used <= fileSize / (3 * sizeof(double)),
       "it cannot have as many vertices as it is said to have");
     Require(this->Bits >= 1 && this->Bits <= 16, "it has an unknown number of bits");
@@ -246,7 +247,9 @@ std::shared_ptr<const TriangleMesh> DecodeConnectivity(
   Require(section.Tag == ConnectivityTag, "it has no connectivity");
   MeshReport report;
   auto mesh = std::make_shared<TriangleMesh>(TriangleMesh::Build(static_cast<int>(head.Vertices),
-    DecodeTriangles(section.Bytes, section.Size, static_cast<int>(head.Triangles)), report));
+    DecodeTriangles(section.Bytes, section.Size, static_cast<int>(head.Triangles),
+      static_cast<std::size_t>(head.Used)),
+    report));
   Require(report.IsManifold(), "its triangles are not an oriented manifold");
   // Those that are used come first, and no others.
   const int used = NumberOfUsed(*mesh);

@@ -2,6 +2,7 @@
 #include "Compression/ConnectivityCoder.h"
 
 #include "Base/Error.h"
+#include "Compression/CutBorder.h"
 #include "Compression/RangeCoder.h"
 
 #include <algorithm>
@@ -11,58 +12,6 @@ namespace cartan
 {
 namespace
 {
-/// The boundary of the triangles so far: directed edges in loops. What is on their left is
-/// not known while they are open, nothing at the border of the surface, and a triangle when
-/// they are closed, which are in no loop.
-struct CutBorder
-{
-  enum class State : char
-  {
-    Open,
-    Border,
-    Closed
-  };
-  struct Edge
-  {
-    int From;
-    int Before = -1;
-    int After = -1;
-    State Is = State::Open;
-  };
-
-  int Add(int from)
-  {
-    this->Edges.push_back({ from });
-    return static_cast<int>(this->Edges.size()) - 1;
-  }
-
-  void Link(int edge, int after)
-  {
-    this->Edges[edge].After = after;
-    this->Edges[after].Before = edge;
-  }
-
-  /// Closes a loop of two edges: they are the two directions of one.
-  void Zip(int edge)
-  {
-    const int after = this->Edges[edge].After;
-    if (this->Edges[after].After == edge)
-    {
-      this->Edges[edge].Is = State::Closed;
-      this->Edges[after].Is = State::Closed;
-    }
-  }
-
-  bool IsOpen(int edge) const { return this->Edges[edge].Is == State::Open; }
-  int From(int edge) const { return this->Edges[edge].From; }
-  int To(int edge) const { return this->From(this->After(edge)); }
-  int Before(int edge) const { return this->Edges[edge].Before; }
-  int After(int edge) const { return this->Edges[edge].After; }
-  int Size() const { return static_cast<int>(this->Edges.size()); }
-
-  std::vector<Edge> Edges;
-};
-
 /// What is on the left of a gate.
 struct Step
 {
@@ -284,8 +233,9 @@ template <typename Coder>
 class Conquest
 {
 public:
-  Conquest(Coder& coder, int numberOfTriangles, Guide* guide = nullptr)
+  Conquest(Coder& coder, int numberOfTriangles, std::size_t mostVertices, Guide* guide = nullptr)
     : Steps(coder)
+    , MostVertices(mostVertices)
     , TheGuide(guide)
     , Result(numberOfTriangles, 3)
   {
@@ -317,7 +267,7 @@ private:
   void Start()
   {
     const int a = static_cast<int>(this->Valences.size());
-    this->Valences.insert(this->Valences.end(), 3, 0);
+    this->AddVertices(3);
     const int edges[3] = { this->TheFront.Add(a), this->TheFront.Add(a + 2),
       this->TheFront.Add(a + 1) }; // a -> c, c -> b, b -> a
     for (int i = 0; i < 3; ++i)
@@ -365,7 +315,7 @@ private:
     }
     if (isNew)
     {
-      this->Valences.push_back(0);
+      this->AddVertices(1);
     }
     const int apex =
       isNew ? static_cast<int>(this->Valences.size()) - 1 : front.From(step.Junction);
@@ -384,6 +334,15 @@ private:
     this->Gates.push_back(first);
   }
 
+  void AddVertices(std::size_t count)
+  {
+    if (this->Valences.size() + count > this->MostVertices)
+    {
+      throw Error(ErrorCode::BadInput, "the connectivity has more vertices than it should");
+    }
+    this->Valences.insert(this->Valences.end(), count, 0);
+  }
+
   void AddTriangle(int a, int b, int c)
   {
     this->Result.row(this->Count++) << a, b, c;
@@ -394,6 +353,7 @@ private:
   }
 
   StepCoder<Coder> Steps;
+  std::size_t MostVertices;
   Guide* TheGuide;
   CutBorder TheFront;
   std::vector<int> Gates;    // those not yet passed, the last comes first
@@ -408,7 +368,9 @@ TraversalOrder OrderByTraversal(const TriangleMesh& mesh)
   RangeEncoder coder;
   Guide guide(mesh);
   TraversalOrder order;
-  order.Faces = Conquest<RangeEncoder>(coder, mesh.NumberOfTriangles(), &guide).Run();
+  order.Faces = Conquest<RangeEncoder>(
+    coder, mesh.NumberOfTriangles(), static_cast<std::size_t>(mesh.NumberOfVertices()), &guide)
+                  .Run();
   order.Vertices = std::move(guide.Order);
   order.NumberOfUsed = static_cast<int>(order.Vertices.size());
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
@@ -435,16 +397,19 @@ std::vector<unsigned char> EncodeTriangles(const TriangleMesh& mesh)
 {
   RangeEncoder coder;
   Guide guide(mesh);
-  if (Conquest<RangeEncoder>(coder, mesh.NumberOfTriangles(), &guide).Run() != mesh.GetTriangles())
+  if (Conquest<RangeEncoder>(
+        coder, mesh.NumberOfTriangles(), static_cast<std::size_t>(mesh.NumberOfVertices()), &guide)
+        .Run() != mesh.GetTriangles())
   {
     throw Error(ErrorCode::BadInput, "triangles to code are not in the order of their code");
   }
   return coder.Finish();
 }
 
-Triangles DecodeTriangles(const unsigned char* bytes, std::size_t size, int numberOfTriangles)
+Triangles DecodeTriangles(
+  const unsigned char* bytes, std::size_t size, int numberOfTriangles, std::size_t mostVertices)
 {
   RangeDecoder coder(bytes, size);
-  return Conquest<RangeDecoder>(coder, numberOfTriangles).Run();
+  return Conquest<RangeDecoder>(coder, numberOfTriangles, mostVertices).Run();
 }
 }

@@ -31,8 +31,9 @@ TraversalOrder OrderByTraversal(const TriangleMesh& mesh);
 /// order of OrderByTraversal().
 std::vector<unsigned char> EncodeTriangles(const TriangleMesh& mesh);
 
-/// Ids of decoded triangles are not negative and less than 3 #T; they need not be a manifold's.
-/// Throws Error(BadInput) when the bytes are no code of so many triangles. Takes memory and
-/// time in proportion to `numberOfTriangles`.
-Triangles DecodeTriangles(const unsigned char* bytes, std::size_t size, int numberOfTriangles);
+/// Decoded triangles need not be a manifold's. Throws Error(BadInput) when the bytes are no code
+/// of so many triangles, or when these have more than `mostVertices` vertices. Takes memory
+/// and time in proportion to `numberOfTriangles`.
+Triangles DecodeTriangles(
+  const unsigned char* bytes, std::size_t size, int numberOfTriangles, std::size_t mostVertices);
 }
