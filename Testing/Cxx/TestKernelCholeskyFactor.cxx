@@ -117,6 +117,79 @@ TEST(CholeskyFactor, WideFactorsTakeMoreMemoryForTheSameSolution)
   }
 }
 
+/// The lower triangle of the Kronecker product of Grid with a full 3 x 3 matrix: three
+/// unknowns for each node, with the same neighbors.
+SparseMatrix GridOfGroups(int count, double shift)
+{
+  Eigen::Matrix3d coupling;
+  coupling << 2.0, 0.5, -0.3, 0.5, 1.5, 0.2, -0.3, 0.2, 1.0;
+  const SparseMatrix grid = Grid(count, shift, true);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index column = 0; column < grid.cols(); ++column)
+  {
+    for (SparseMatrix::InnerIterator entry(grid, column); entry; ++entry)
+    {
+      for (int r = 0; r < 3; ++r)
+      {
+        for (int c = 0; c < 3; ++c)
+        {
+          if (3 * entry.row() + r >= 3 * column + c)
+          {
+            entries.emplace_back(3 * static_cast<int>(entry.row()) + r,
+              3 * static_cast<int>(column) + c, coupling(r, c) * entry.value());
+          }
+        }
+      }
+    }
+  }
+  SparseMatrix lower(3 * grid.rows(), 3 * grid.cols());
+  lower.setFromTriplets(entries.begin(), entries.end());
+  return lower;
+}
+
+TEST(CholeskyFactor, GivesTheSameSolutionWhateverItIsFor)
+{
+  const SparseMatrix lower = GridOfGroups(30, 0.1);
+  const Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Random(lower.rows(), 3);
+  const auto residual = [&](const SymmetricSolver& factor)
+  {
+    const Eigen::MatrixXd image = lower.selfadjointView<Eigen::Lower>() * factor.GetSolution();
+    return (image - rightHandSide).cwiseAbs().maxCoeff();
+  };
+  for (const SolverBackend backend : Backends())
+  {
+    for (const int groupSize : { 1, 3, 7 }) // 7 does not divide the number of unknowns
+    {
+      for (const bool isWide : { false, true })
+      {
+        std::vector<std::size_t> bytes;
+        for (const auto use : { cartan::FactorUse::ManySolves, cartan::FactorUse::FewSolves,
+               cartan::FactorUse::OneSolve })
+        {
+          FactorLimits limits;
+          limits.NarrowEntries = isWide ? 10 : limits.NarrowEntries;
+          limits.Use = use;
+          limits.GroupSize = groupSize;
+          const auto factor = cartan::MakeSymmetricSolver(backend, limits);
+          ASSERT_EQ(factor->Analyze(lower), SolverStatus::Ok);
+          for (int round = 0; round < 2; ++round) // the analysis serves again
+          {
+            ASSERT_EQ(factor->Factorize(lower), SolverStatus::Ok);
+            ASSERT_EQ(factor->Solve(rightHandSide), SolverStatus::Ok);
+            EXPECT_LT(residual(*factor), 1e-12);
+          }
+          bytes.push_back(factor->GetBytes());
+        }
+        if (backend == SolverBackend::Cholmod)
+        {
+          EXPECT_LT(bytes[1], bytes[0]);
+          EXPECT_LT(bytes[2], bytes[1] / 2);
+        }
+      }
+    }
+  }
+}
+
 TEST(CholeskyFactor, TellsWhatWentWrong)
 {
   for (const SolverBackend backend : Backends())

@@ -44,13 +44,26 @@ Anchors Anchors::Repeated(int count) const
   return repeated;
 }
 
-void AnchoredSystem::Factorize(
-  const SparseMatrix& matrix, const Anchors& anchors, const ExecutionContext& context)
+void AnchoredSystem::Hold(const Anchors& anchors)
 {
   // Solves need not add zeros.
   this->Stiffness = anchors.Stiffness.isZero(0.0) ? Eigen::VectorXd() : anchors.Stiffness;
   this->RightHandSide = SparseMatrix();
+}
+
+void AnchoredSystem::Factorize(
+  const SparseMatrix& matrix, const Anchors& anchors, const ExecutionContext& context)
+{
+  this->Hold(anchors);
   this->Solver.Factorize(matrix, anchors.IsHard, this->Stiffness, anchors.Vertices, context);
+}
+
+void AnchoredSystem::Factorize(
+  SparseMatrix&& matrix, const Anchors& anchors, const ExecutionContext& context)
+{
+  this->Hold(anchors);
+  this->Solver.Factorize(
+    std::move(matrix), anchors.IsHard, this->Stiffness, anchors.Vertices, context);
 }
 
 void AnchoredSystem::FactorizeFit(const SparseMatrix& laplacian, const Eigen::VectorXd& inverseMass,

@@ -48,6 +48,10 @@ public:
   void Factorize(
     const SparseMatrix& matrix, const Anchors& anchors, const ExecutionContext& context = {});
 
+  /// The same; `matrix` is released before the factorization takes its memory.
+  void Factorize(
+    SparseMatrix&& matrix, const Anchors& anchors, const ExecutionContext& context = {});
+
   /// The same for a fit of differential coordinates: equations L x = M d, in the
   /// weight of M^-1 (`inverseMass`, #U),
   ///
@@ -86,6 +90,8 @@ public:
   std::size_t GetBytes() const;
 
 private:
+  void Hold(const Anchors& anchors);
+
   ConstrainedSolver Solver;
   Eigen::VectorXd Stiffness;  // empty where nothing is soft
   SparseMatrix RightHandSide; // from d to b; empty where they are the same

@@ -101,11 +101,23 @@ SolverBackend DirectUnlessNamed(SolverBackend backend)
                                              : SolverBackend::Eigen;
 }
 
-bool SamePattern(const SparseMatrix& a, const SparseMatrix& b)
+/// A number that differs where the pattern of a matrix does, but for one in 2^64, and is not
+/// 0. The pattern itself would take a tenth of the factor's memory.
+std::uint64_t FingerprintOf(const SparseMatrix& matrix)
 {
-  return a.rows() == b.rows() && a.nonZeros() == b.nonZeros() &&
-    std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize() + 1, b.outerIndexPtr()) &&
-    std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr());
+  std::uint64_t fingerprint = static_cast<std::uint64_t>(matrix.rows());
+  const auto add = [&fingerprint](const int* values, Eigen::Index count)
+  {
+    for (Eigen::Index i = 0; i < count; ++i)
+    {
+      // An odd number near 2^64 over the golden ratio; the shift brings high bits down.
+      fingerprint = (fingerprint ^ static_cast<std::uint64_t>(values[i])) * 0x9e3779b97f4a7c15;
+      fingerprint ^= fingerprint >> 32;
+    }
+  };
+  add(matrix.outerIndexPtr(), matrix.outerSize() + 1);
+  add(matrix.innerIndexPtr(), matrix.nonZeros());
+  return fingerprint | 1;
 }
 }
 
@@ -208,14 +220,31 @@ void ConstrainedSolver::Factorize(const SparseMatrix& matrix, const std::vector<
 {
   RequireConstraints(matrix, isFixed, stiffness, vertices);
   context.Report(0.1);
-  const std::vector<int> lastFree = std::move(this->Free);
   this->NumberFree(isFixed);
-  SparseMatrix block = this->SplitBlocks(matrix, stiffness);
+  this->FactorizeFree(this->SplitBlocks(matrix, stiffness), context);
+}
+
+void ConstrainedSolver::Factorize(SparseMatrix&& matrix, const std::vector<char>& isFixed,
+  const Eigen::VectorXd& stiffness, const std::vector<int>& vertices,
+  const ExecutionContext& context)
+{
+  RequireConstraints(matrix, isFixed, stiffness, vertices);
+  context.Report(0.1);
+  this->NumberFree(isFixed);
+  const SparseMatrix block = this->SplitBlocks(matrix, stiffness);
+  SparseMatrix().swap(matrix); // Eigen has no move of sparse matrices
+  this->FactorizeFree(block, context);
+}
+
+/// `block` is the lower triangle of A_ff + diag s_f.
+void ConstrainedSolver::FactorizeFree(const SparseMatrix& block, const ExecutionContext& context)
+{
   const Eigen::Index numberOfFree = block.rows();
-  const bool isAnalyzed = lastFree == this->Free && SamePattern(block, this->FreeBlock);
-  // Empty until it is factorized: the next call must not reuse what a failure
+  const std::uint64_t pattern = FingerprintOf(block);
+  const bool isAnalyzed = pattern == this->Pattern;
+  // None until it is factorized: the next call must not reuse what a failure
   // leaves behind.
-  this->FreeBlock = SparseMatrix();
+  this->Pattern = 0;
   const bool isLarge = this->Asked == SolverBackend::Automatic && HasHypre() &&
     numberOfFree > this->Limits.DirectUnknowns;
   SolverStatus status = SolverStatus::NotConverged;
@@ -229,14 +258,14 @@ void ConstrainedSolver::Factorize(const SparseMatrix& matrix, const std::vector<
     status = this->FactorizeAs(DirectUnlessNamed(this->Asked), block, isAnalyzed, context);
   }
   RequireSolver(status, numberOfFree);
-  this->FreeBlock.swap(block); // Eigen has no move of sparse matrices
+  this->Pattern = pattern;
   context.Report(1.0);
 }
 
 std::size_t ConstrainedSolver::GetBytes() const
 {
   return (this->Solver ? this->Solver->GetBytes() : 0) +
-    TotalBytes(this->Free, this->FreeIndex, this->FreeBlock, this->Coupling);
+    TotalBytes(this->Free, this->FreeIndex, this->Coupling);
 }
 
 Eigen::Map<const Eigen::MatrixXd> ConstrainedSolver::SolveFree(

@@ -4,6 +4,7 @@
 #include "Algebra/SymmetricSolver.h"
 #include "Base/ExecutionContext.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -40,6 +41,11 @@ public:
     const Eigen::VectorXd& stiffness = {}, const std::vector<int>& vertices = {},
     const ExecutionContext& context = {});
 
+  /// The same; `matrix` is released before the factorization takes its memory.
+  void Factorize(SparseMatrix&& matrix, const std::vector<char>& isFixed,
+    const Eigen::VectorXd& stiffness = {}, const std::vector<int>& vertices = {},
+    const ExecutionContext& context = {});
+
   /// The free unknowns in increasing order.
   const std::vector<int>& GetFree() const { return this->Free; }
 
@@ -69,6 +75,7 @@ public:
 private:
   SolverStatus FactorizeAs(SolverBackend backend, const SparseMatrix& block, bool isAnalyzed,
     const ExecutionContext& context);
+  void FactorizeFree(const SparseMatrix& block, const ExecutionContext& context);
   void NumberFree(const std::vector<char>& isFixed);
   SparseMatrix SplitBlocks(const SparseMatrix& matrix, const Eigen::VectorXd& stiffness);
 
@@ -78,8 +85,8 @@ private:
   std::unique_ptr<SymmetricSolver> Solver;
   std::vector<int> Free;
   std::vector<int> FreeIndex; // #U, -1 where fixed
-  SparseMatrix FreeBlock;     // lower triangle of A_ff + diag s_f
   SparseMatrix Coupling;      // A_fc, #free x #U
+  std::uint64_t Pattern = 0;  // fingerprint of that of A_ff which is analyzed, 0 for none
   int Factorizations = 0;
   int Analyses = 0;
 };

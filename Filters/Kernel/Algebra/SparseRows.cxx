@@ -41,9 +41,9 @@ std::int64_t CountTerms(const SparseRows<Value>& left, const SparseRows<Value>& 
   }
   return terms;
 }
-}
 
-SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& residuals,
+/// The rows of NormalMatrix.
+SparseRows<double> NormalRows(int size, int numberOfFree, const SparseRows<double>& residuals,
   const SparseRows<Eigen::Vector3d>& gradients, const SparseRows<Eigen::Vector3d>& differences,
   const ExecutionContext& context)
 {
@@ -70,7 +70,7 @@ SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& 
     }
     RequireIndexable(entries, "The normal system");
   }
-  const SparseRows<double> rows = MakeRows<double>(size, context,
+  return MakeRows<double>(size, context,
     [&](int begin, int end, SparseRows<double>& part)
     {
       RowSum<double> sum(size);
@@ -88,6 +88,15 @@ SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& 
         part.FinishRow();
       }
     });
+}
+}
+
+SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& residuals,
+  const SparseRows<Eigen::Vector3d>& gradients, const SparseRows<Eigen::Vector3d>& differences,
+  const ExecutionContext& context)
+{
+  const SparseRows<double> rows =
+    NormalRows(size, numberOfFree, residuals, gradients, differences, context);
   SparseMatrix matrix(size, size);
   matrix.resizeNonZeros(static_cast<Eigen::Index>(rows.Entries.size()));
   std::copy(rows.Offsets.begin(), rows.Offsets.end(), matrix.outerIndexPtr());

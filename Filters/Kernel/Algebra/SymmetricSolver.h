@@ -44,6 +44,14 @@ enum class SolverStatus
 /// NotConverged or SolverFailed.
 void RequireSolver(SolverStatus status, Eigen::Index unknowns);
 
+/// What a factor is for, which decides how a library keeps it.
+enum class FactorUse
+{
+  ManySolves, ///< of few right-hand sides each, as fast as can be
+  FewSolves,  ///< in two thirds of the memory where the factor is large
+  OneSolve    ///< the same, and released by it; another needs another factorization
+};
+
 /// Where a factorization stops being attempted, or changes its indices or its kind.
 /// The defaults are those of the machine; tests lower them.
 struct FactorLimits
@@ -56,6 +64,10 @@ struct FactorLimits
   /// Automatic solves more unknowns than this by conjugate gradients, when built with
   /// them and where they reach their tolerance. Whose matrix is a Laplacian lowers it.
   Eigen::Index DirectUnknowns = std::numeric_limits<Eigen::Index>::max();
+  FactorUse Use = FactorUse::ManySolves;
+  /// So many unknowns side by side have the same neighbors, as the coordinates of a point
+  /// have: the groups are ordered instead, which is cheap enough to do well.
+  int GroupSize = 1;
 };
 
 /// Solves A x = b for a sparse symmetric positive definite matrix, of which the lower

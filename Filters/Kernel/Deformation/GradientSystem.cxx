@@ -2,10 +2,9 @@
 #include "Deformation/GradientSystem.h"
 
 #include "Base/FloodFill.h"
+#include "Deformation/HeldPoints.h"
 #include "Differential/Laplacian.h"
 #include "Mesh/TriangleShape.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -92,24 +91,12 @@ Eigen::VectorXd VertexMasses(const TriangleMesh& mesh, const Points& rest)
   return masses;
 }
 
-/// Whether points are not all in one plane. An affine map that keeps held
-/// positions costs nothing, so they must leave only the identity.
-bool SpansSpace(const Points& rest, const std::vector<int>& vertices)
+/// Where a field per handle is kept, motions are blends of them.
+FactorLimits GradientLimits(const HandleProblem& problem)
 {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const int v : vertices)
-  {
-    mean += rest.row(v).transpose() / static_cast<double>(vertices.size());
-  }
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const int v : vertices)
-  {
-    const Eigen::Vector3d difference = rest.row(v).transpose() - mean;
-    moments += difference * difference.transpose();
-  }
-  const Eigen::Vector3d eigenvalues =
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly).eigenvalues();
-  return eigenvalues[0] > 1e-10 * eigenvalues[2];
+  FactorLimits limits;
+  limits.Use = StoresHandleFields(problem) ? FactorUse::FewSolves : FactorUse::ManySolves;
+  return limits;
 }
 }
 
@@ -117,7 +104,7 @@ GradientSystem::GradientSystem(const HandleProblem& problem, int coherenceRings,
   bool constrainTransforms, SolverBackend backend, const ExecutionContext& context)
   : MovingHandles(MovingHandleOfVertices(problem))
   , EdgeWeights(cartan::EdgeWeights(*problem.Mesh, *problem.Rest, problem.Weights, context))
-  , System(RequireDirect(backend, "Similarity deformation"))
+  , System(RequireDirect(backend, "Similarity deformation"), GradientLimits(problem))
 {
   const GradientConstraints constraints = this->ReadConstraints(problem, constrainTransforms);
   this->RequireDeterminedSurface(problem, constraints);
@@ -306,12 +293,15 @@ void GradientSystem::Factorize(const TriangleMesh& mesh, const ExecutionContext&
 {
   const RingGradients& gradients = *this->Gradients;
   const int size = gradients.NumberOfColumns();
-  const SparseRows<Eigen::Vector3d> differences = this->DifferenceRows(context);
-  context.Report(0.1);
-  // The free columns come first unless there are normals.
-  const SparseMatrix matrix =
+  SparseMatrix matrix;
+  {
+    const SparseRows<Eigen::Vector3d> differences = this->DifferenceRows(context);
+    context.Report(0.1);
+    // The free columns come first unless there are normals.
     NormalMatrix(size, gradients.NumberOfNormals() ? size : gradients.NumberOfUnknowns(),
-      this->ResidualRows(mesh), gradients.Rows(), differences, context);
+      this->ResidualRows(mesh), gradients.Rows(), differences, context)
+      .swap(matrix);
+  }
   context.Report(0.3);
   Anchors anchors;
   anchors.IsHard.resize(size);
@@ -329,7 +319,7 @@ void GradientSystem::Factorize(const TriangleMesh& mesh, const ExecutionContext&
       this->SoftPositions[v] / (this->EdgeLengths[v] * this->EdgeLengths[v]);
   }
   anchors.Stiffness = this->Stiffness;
-  this->System.Factorize(matrix, anchors, context.Part(0.3, 1.0));
+  this->System.Factorize(std::move(matrix), anchors, context.Part(0.3, 1.0));
   RequireTranslations(this->System, anchors);
   this->Values.setZero(size, 3);
 }

@@ -8,11 +8,24 @@
 
 namespace cartan
 {
+namespace
+{
+/// Rows that reach beyond the neighbors make supernodes large, from which solves are no
+/// slower than from columns.
+FactorLimits PolyharmonicLimits(int order)
+{
+  FactorLimits limits;
+  limits.Use = order > 1 ? FactorUse::FewSolves : FactorUse::ManySolves;
+  return limits;
+}
+}
+
 PolyharmonicSystem::PolyharmonicSystem(
   const HandleProblem& problem, int order, SolverBackend backend, const ExecutionContext& context)
   : Order(order)
   , System(
-      order == 1 ? backend : RequireDirect(backend, "A method of order " + std::to_string(order)))
+      order == 1 ? backend : RequireDirect(backend, "A method of order " + std::to_string(order)),
+      PolyharmonicLimits(order))
 {
   const TriangleMesh& mesh = *problem.Mesh;
   const std::vector<char> isUnknown = UnknownVertices(problem, Hold::AllHandles);
@@ -32,9 +45,9 @@ PolyharmonicSystem::PolyharmonicSystem(
   }
   // A walk of k edges from an unknown vertex meets complete rows only, so that
   // the unknowns' rows are those of the whole mesh.
-  const SparseMatrix matrix = PolyharmonicMatrix(this->Laplacian, this->InverseMass, order);
+  SparseMatrix matrix = PolyharmonicMatrix(this->Laplacian, this->InverseMass, order);
   context.Report(0.3);
-  this->System.Factorize(matrix, this->Held, context.Part(0.3, 0.95));
+  this->System.Factorize(std::move(matrix), this->Held, context.Part(0.3, 0.95));
   this->MeasureError(*problem.Rest);
   context.Report(1.0);
 }

@@ -70,7 +70,7 @@ void SimilarityDeformer::FactorizePositions(const ExecutionContext& context)
   const RingGradients& gradients = this->System.GetGradients();
   const int size = gradients.NumberOfPositions();
   const SparseRows<double> laplacians = this->System.LaplacianRows(*this->Problem.Mesh);
-  const SparseMatrix matrix =
+  SparseMatrix matrix =
     NormalMatrix(size, gradients.NumberOfUnknowns(), laplacians, {}, {}, context);
   Anchors anchors = Anchors::After(gradients.NumberOfUnknowns(), size);
   anchors.Stiffness = this->System.GetStiffness().head(size);
@@ -78,7 +78,7 @@ void SimilarityDeformer::FactorizePositions(const ExecutionContext& context)
   {
     anchors.Vertices.push_back(gradients.Vertex(column));
   }
-  this->PositionSystem.Factorize(matrix, anchors, context);
+  this->PositionSystem.Factorize(std::move(matrix), anchors, context);
   this->PositionColumns = laplacians.Transposed(size);
   this->ArePositionsFactorized = true;
 }

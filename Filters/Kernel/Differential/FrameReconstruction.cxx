@@ -182,6 +182,14 @@ SparseMatrix FrameMatrix(
   return matrix;
 }
 
+FactorLimits FrameLimits()
+{
+  FactorLimits limits;
+  limits.Use = FactorUse::OneSolve;
+  limits.GroupSize = 3;
+  return limits;
+}
+
 Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices frames, AnchoredSystem& system,
   const ExecutionContext& context, const Eigen::VectorXd& weights)
@@ -261,7 +269,7 @@ Matrices ReconstructFrames(const TriangleMesh& mesh, const Transitions& transiti
       }
     }
   }
-  AnchoredSystem system;
+  AnchoredSystem system(SolverBackend::Automatic, FrameLimits());
   return SolveFrames(mesh, transitions, isFixed, std::move(frames), system, context.Part(0.5, 1.0));
 }
 

@@ -17,11 +17,14 @@ namespace cartan
 SparseMatrix FrameMatrix(
   const TriangleMesh& mesh, const Transitions& transitions, const Eigen::VectorXd& weights = {});
 
+/// What a system that serves SolveFrames is for: one solve for each matrix.
+FactorLimits FrameLimits();
+
 /// The frames that fit the transitions best in the least-squares sense, with
 /// those given where `isFixed` is non-zero: #V x 9. Raw: rotations only if the
 /// transitions are consistent. Throws Error(SingularSystem) for a component
-/// without a fixed frame. Unused vertices keep what `frames` has. `system` keeps the
-/// symbolic factors for other transitions on the same mesh.
+/// without a fixed frame. Unused vertices keep what `frames` has. `system`, best made with
+/// FrameLimits(), keeps the symbolic factors for other transitions on the same mesh.
 Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices frames, AnchoredSystem& system,
   const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {});

@@ -20,6 +20,7 @@ DiscreteFormsMorph::DiscreteFormsMorph(const KeyFrames& keys, Transitions transi
   , Method(transitions)
   , Solver(solver)
   , Laplacian(std::make_shared<AnchoredSystem>())
+  , FrameSystem(SolverBackend::Automatic, FrameLimits())
 {
   for (int d = 0; d < this->Mesh->NumberOfDirectedEdges(); ++d)
   {
