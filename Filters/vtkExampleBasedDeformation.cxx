@@ -15,6 +15,28 @@
 #include <string>
 #include <vector>
 
+namespace
+{
+constexpr vtkIdType MostWeightsInCharts = 16; // each is a line of a chart over time
+
+/// The weights as one array, and as numbers of their own: charts over time leave out arrays
+/// of several.
+void AddToFieldData(vtkDoubleArray* weights, vtkPolyData* output)
+{
+  vtkNew<vtkDoubleArray> copy;
+  copy->DeepCopy(weights);
+  output->GetFieldData()->AddArray(copy);
+  const vtkIdType count = weights->GetNumberOfTuples();
+  for (vtkIdType k = 0; k < count && count <= MostWeightsInCharts; ++k)
+  {
+    vtkNew<vtkDoubleArray> weight;
+    weight->SetName(("Weight of example " + std::to_string(k)).c_str());
+    weight->InsertNextValue(weights->GetValue(k));
+    output->GetFieldData()->AddArray(weight);
+  }
+}
+}
+
 vtkStandardNewMacro(vtkExampleBasedDeformation);
 
 class vtkExampleBasedDeformation::Internals
@@ -143,9 +165,7 @@ cartan::DeformationMethod vtkExampleBasedDeformation::NewMethod(
     {
       weights->SetValue(k, fitted->GetWeights()[k]);
     }
-    vtkNew<vtkDoubleArray> copy;
-    copy->DeepCopy(weights);
-    run.Output()->GetFieldData()->AddArray(copy);
+    AddToFieldData(weights, run.Output());
     this->SpanDistance = fitted->GetDistance();
     this->NumberOfIterations = fitted->GetNumberOfIterations();
     this->Converged = fitted->HasConverged();

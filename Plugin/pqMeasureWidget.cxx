@@ -36,8 +36,10 @@ void pqMeasureWidget::showNumber()
 {
   const double value = vtkSMPropertyHelper(this->property()).GetAsDouble();
   const bool isPercent = this->Unit == "%";
-  // Six digits, as ParaView's own panels show.
-  const QString number = QString::number(isPercent ? 100.0 * value : value, 'g', 6);
+  // Six digits, as ParaView's own panels show, but counts whole.
+  const bool isCount = this->property()->IsA("vtkSMIntVectorProperty");
+  const QString number =
+    QString::number(isPercent ? 100.0 * value : value, isCount ? 'f' : 'g', isCount ? 0 : 6);
   this->Number->setText(std::isnan(value) ? tr("undefined")
       : this->Unit.isEmpty()              ? number
                                           : number + " " + this->Unit);

@@ -3,7 +3,7 @@
  * @class pqMeasureWidget
  * @brief a number that a filter reports, with its unit
  *
- * In XML: a DoubleVectorProperty with information_only="1" and
+ * In XML: a Double- or IntVectorProperty with information_only="1" and
  * panel_widget="cartan_measure"; its hints say the unit: <Unit name="1/length"/>, or name="%"
  * for a ratio that is shown in percent.
  */

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Advice.h"
+#include "TimeSource.h"
 
 #include "vtkExampleBasedDeformation.h"
 
@@ -9,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace
 {
@@ -86,6 +89,34 @@ TEST(ExampleBasedDeformation, ReachesExamplesAndTellsTheirWeights)
   vtkNew<vtkExampleBasedDeformation> filter;
   filter->Print(text);
   EXPECT_NE(text.str().find("SpanDistance: 0"), std::string::npos);
+}
+
+TEST(ExampleBasedDeformation, PutsWeightsIntoChartsOverTime)
+{
+  const auto bar = vtktest::MakePolyData(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 }));
+  vtktest::MarkEnds(bar, 0.6, 3.4);
+  const std::vector<vtkSmartPointer<vtkPolyData>> poses{ Bent(bar, 1.2), Bent(bar, -0.5) };
+  vtkNew<vtktest::TimeSource> source;
+  source->SetSteps({ 0.0, 1.0, 2.0 },
+    { WithTargets(bar, bar), WithTargets(bar, poses[0]), WithTargets(bar, poses[1]) });
+  vtkNew<vtkExampleBasedDeformation> filter;
+  filter->SetInputConnection(source->GetOutputPort());
+  filter->AddExampleData(poses[0]);
+  filter->AddExampleData(poses[1]);
+  filter->SetTargetPositionArrayName("Target");
+  for (int step = 0; step < 3; ++step)
+  {
+    filter->UpdateTimeStep(step);
+    for (int k = 0; k < 2; ++k)
+    {
+      // Charts draw arrays of one tuple and leave out others.
+      auto* weight = filter->GetOutput()->GetFieldData()->GetArray(
+        ("Weight of example " + std::to_string(k)).c_str());
+      ASSERT_TRUE(weight);
+      ASSERT_EQ(weight->GetNumberOfValues(), 1);
+      EXPECT_NEAR(weight->GetTuple1(0), step == k + 1 ? 1.0 : 0.0, 1e-6) << k << ' ' << step;
+    }
+  }
 }
 
 TEST(ExampleBasedDeformation, NeedsExamplesOfTheSameCells)

@@ -81,6 +81,21 @@ class Panels(unittest.TestCase):
                     self.assertTrue(text.endswith("."), name + ": " + text)
         self.assertGreater(count, 100)
 
+    def test_results_do_not_look_editable(self):
+        """Numbers that are reported are shown as such: others' fields take what is typed."""
+        count = 0
+        for path in sorted((ROOT / "Plugin").glob("*.xml")):
+            for proxy in proxies(xml.etree.ElementTree.parse(path)):
+                for element in proxy:
+                    if (element.tag in ("IntVectorProperty", "DoubleVectorProperty")
+                            and element.get("information_only") == "1"
+                            and element.get("number_of_elements") == "1"
+                            and element.get("panel_visibility") == "default"):
+                        count += 1
+                        self.assertEqual(element.get("panel_widget"), "cartan_measure",
+                                         "%s.%s" % (proxy.get("name"), element.get("name")))
+        self.assertGreater(count, 20)
+
     def test_every_filter_has_an_icon(self):
         plugin = ROOT / "Plugin"
         listed = {file.text for file in
