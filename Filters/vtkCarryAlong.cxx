@@ -5,8 +5,10 @@
 #include "Bridge/MatchedSurfaces.h"
 #include "Bridge/PointArrays.h"
 #include "Kernel/Deformation/SurfaceBinding.h"
+#include "Kernel/Deformation/TetrahedronGraph.h"
 
 #include "vtkCellData.h"
+#include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkIdList.h"
@@ -20,7 +22,9 @@
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkTetra.h"
+
+#include <string>
+#include <vector>
 
 vtkStandardNewMacro(vtkCarryAlong);
 
@@ -97,14 +101,41 @@ void TurnArrays(vtkPointData* arrays, const cartan::Matrices& rotations, bool al
   }
 }
 
-double TetrahedronVolume(vtkPointSet* mesh, vtkIdList* ids)
+/// The tetrahedra among the cells that are turned inside out, relative to `origin` at rest
+/// and in the places `current` (#points x 3).
+cartan::IdSample InvertedCells(
+  vtkPointSet* mesh, const Eigen::Vector3d& origin, const cartan::Points& current)
 {
-  double corners[4][3];
-  for (int i = 0; i < 4; ++i)
+  std::vector<long long> cells;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
   {
-    mesh->GetPoint(ids->GetId(i), corners[i]);
+    if (mesh->GetCellType(cell) == VTK_TETRA)
+    {
+      cells.push_back(cell);
+    }
   }
-  return vtkTetra::ComputeVolume(corners[0], corners[1], corners[2], corners[3]);
+  if (cells.empty())
+  {
+    return {};
+  }
+  cartan::Tetrahedra tetrahedra(static_cast<Eigen::Index>(cells.size()), 4);
+  vtkNew<vtkIdList> ids;
+  for (std::size_t t = 0; t < cells.size(); ++t)
+  {
+    mesh->GetCellPoints(cells[t], ids);
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      tetrahedra(static_cast<Eigen::Index>(t), corner) = static_cast<int>(ids->GetId(corner));
+    }
+  }
+  return cartan::InvertedTetrahedra(ReadQueries(mesh, origin), current, tetrahedra).Renamed(cells);
+}
+
+std::string WarningOf(const cartan::IdSample& inverted)
+{
+  return inverted.IsEmpty() ? ""
+                            : "The surface bends more sharply than its inside can follow: " +
+      inverted.Describe("tetrahedron is inverted", "tetrahedra are inverted") + ".";
 }
 }
 
@@ -189,30 +220,6 @@ void vtkCarryAlong::ForgetResults()
   this->NumberOfInvertedCells = 0;
 }
 
-void vtkCarryAlong::WarnOfInvertedCells(
-  vtkPointSet* before, vtkPointSet* after, cartan::FilterRun& run)
-{
-  cartan::IdSample inverted;
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; cell < before->GetNumberOfCells(); ++cell)
-  {
-    if (before->GetCellType(cell) == VTK_TETRA)
-    {
-      before->GetCellPoints(cell, ids);
-      if (TetrahedronVolume(before, ids) * TetrahedronVolume(after, ids) < 0.0)
-      {
-        inverted.Add(cell);
-      }
-    }
-  }
-  this->NumberOfInvertedCells = static_cast<vtkIdType>(inverted.GetCount());
-  if (!inverted.IsEmpty())
-  {
-    run.Warn("The surface bends more sharply than its inside can follow: " +
-      inverted.Describe("tetrahedron is inverted", "tetrahedra are inverted") + ".");
-  }
-}
-
 void vtkCarryAlong::Execute(cartan::FilterRun& run)
 {
   auto* input = vtkPointSet::SafeDownCast(run.InputObject(0));
@@ -265,6 +272,8 @@ void vtkCarryAlong::Execute(cartan::FilterRun& run)
   output->GetCellData()->SetNormals(nullptr);
   cartan::AddArray(output->GetPointData(), "SurfaceDistance", binding.GetDistances());
   this->LargestDistance = binding.GetDistances().maxCoeff();
-  this->WarnOfInvertedCells(input, output, run);
+  const auto inverted = InvertedCells(input, matched.Origins[0], carried.Positions);
+  this->NumberOfInvertedCells = static_cast<vtkIdType>(inverted.GetCount());
+  run.Warn(WarningOf(inverted));
   run.Context().Report(1.0);
 }

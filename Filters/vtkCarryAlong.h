@@ -95,8 +95,6 @@ protected:
   void UsePreparedInput(cartan::FilterRun&) const override { this->RefusePrepareInput(); }
 
 private:
-  void WarnOfInvertedCells(vtkPointSet* before, vtkPointSet* after, cartan::FilterRun& run);
-
   bool TurnVectors = false;
   double LargestDistance = 0.0;
   vtkIdType NumberOfInvertedCells = 0;

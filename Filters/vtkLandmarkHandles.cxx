@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLandmarkHandles.h"
 
+#include "Bridge/ContentKey.h"
 #include "Bridge/FilterRun.h"
 #include "Bridge/HandleArrays.h"
 #include "Bridge/LandmarkReader.h"
 #include "Bridge/PointArrays.h"
+#include "Kernel/Base/Bytes.h"
 #include "Kernel/Deformation/LandmarkWeights.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "Kernel/Mesh/UsedVertices.h"
@@ -21,6 +23,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
 #include <sstream>
 
@@ -50,6 +53,26 @@ const char* const WeightArray = "ConstraintWeight";
 /// Landmarks farther away, in parts of the surface's size, look like those of another
 /// coordinate system.
 constexpr double FarPart = 0.1;
+
+/// What is kept of one surface and its landmarks.
+struct KeptWeights
+{
+  Eigen::VectorXd Weights;
+
+  std::size_t GetBytes() const { return cartan::BytesOf(this->Weights); }
+};
+
+/// Of all that LandmarkWeights depends on.
+cartan::ContentKey KeyOfWeights(const cartan::Surface& surface, const std::vector<char>& pinned,
+  const cartan::LandmarkTargets& targets)
+{
+  const std::size_t count = targets.Vertices.size();
+  cartan::ContentKey key = surface.Key;
+  return key.AddBytes(pinned.data(), pinned.size())
+    .AddBytes(targets.Vertices.data(), count * sizeof(int))
+    .AddBytes(targets.Displacements.data(), 3 * count * sizeof(double))
+    .AddBytes(targets.Accuracies.data(), count * sizeof(double));
+}
 
 std::string Text(double value)
 {
@@ -324,8 +347,14 @@ void vtkLandmarkHandles::Execute(cartan::FilterRun& run)
     placed.Ids.push_back(id);
     pinned[v] = 0;
   }
-  placed.Weights = cartan::LandmarkWeights(*placed.Surface->Mesh, *placed.Surface->Positions,
-    pinned, placed.Targets, run.Context().Part(0.3, 0.9));
+  const auto kept = run.Keep<KeptWeights>(KeyOfWeights(*placed.Surface, pinned, placed.Targets),
+    [&]
+    {
+      return std::make_unique<KeptWeights>(
+        KeptWeights{ cartan::LandmarkWeights(*placed.Surface->Mesh, *placed.Surface->Positions,
+          pinned, placed.Targets, run.Context().Part(0.3, 0.9)) });
+    });
+  placed.Weights = kept->Weights;
   this->WriteArrays(placed, run);
   this->NumberOfLandmarks = static_cast<int>(placed.Ids.size());
   this->LargestDistance = placed.Distances.maxCoeff();

@@ -266,21 +266,24 @@ void RefuseDistributed(vtkAlgorithm* filter)
   // have different numbers of blocks and must not wait for each other.
   vtkAlgorithm* producer = filter->GetInputAlgorithm(0, 0);
   const int producerPort = filter->GetInputConnection(0, 0)->GetIndex();
-  if (!vtkPolyData::SafeDownCast(producer->GetOutputDataObject(producerPort)))
+  if (!vtkDataSet::SafeDownCast(producer->GetOutputDataObject(producerPort)))
   {
     throw CollectiveError(
       "Composite surfaces cannot be processed on several ranks: extract a block and gather it on "
       "one rank (Aggregate Dataset) first.");
   }
-  auto* input = vtkPolyData::SafeDownCast(filter->GetInputDataObject(0, 0));
+  auto* input = vtkDataSet::SafeDownCast(filter->GetInputDataObject(0, 0));
   const int hasCells = input && input->GetNumberOfCells() > 0;
   int ranksWithCells = 0;
   controller->AllReduce(&hasCells, &ranksWithCells, 1, vtkCommunicator::SUM_OP);
   if (ranksWithCells > 1)
   {
-    throw CollectiveError("The surface is distributed over " + std::to_string(ranksWithCells) +
+    const bool isSurface = vtkPolyData::SafeDownCast(input) != nullptr;
+    throw CollectiveError((isSurface ? "The surface" : "The mesh") +
+      (" is distributed over " + std::to_string(ranksWithCells)) +
       " ranks, and the pieces do not know their neighbors: gather it on one rank (Aggregate "
-      "Dataset, then Clean) first.");
+      "Dataset, then " +
+      (isSurface ? "Clean" : "Clean to Grid") + ") first.");
   }
 }
 }

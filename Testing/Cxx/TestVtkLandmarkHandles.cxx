@@ -11,6 +11,7 @@
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -130,6 +131,35 @@ Eigen::VectorXd Misses(vtkPolyData* marked, const Ball& ball, bool isSoft)
   }
   return misses;
 }
+}
+
+TEST(VtkLandmarkHandles, KeepsWeightsForTheSameLandmarks)
+{
+  Ball ball;
+  ball->SetAccuracy(0.05);
+  vtkNew<vtktest::ProgressLog> progress;
+  ball->AddObserver(vtkCommand::ProgressEvent, progress);
+  // Factorizations of the harmonic model report between .3 and .9 of all.
+  const auto reports = [&]()
+  {
+    progress->Fractions.clear();
+    ball.Works();
+    return std::count_if(progress->Fractions.begin(), progress->Fractions.end(),
+      [](double fraction) { return fraction > 0.301 && fraction < 0.899; });
+  };
+  const auto firstWeight = [&]()
+  { return ball->GetLandmarkTable()->GetValueByName(0, "Weight").ToDouble(); };
+  EXPECT_GT(reports(), 0);
+  const double weight = firstWeight();
+  ball->SetHandleArrayName("Landmark");
+  EXPECT_EQ(reports(), 0);
+  EXPECT_EQ(firstWeight(), weight);
+  ball->SetAccuracy(0.02);
+  EXPECT_GT(reports(), 0);
+  EXPECT_GT(firstWeight(), weight);
+  ball.To.row(0) *= 2.0;
+  ball.Connect();
+  EXPECT_GT(reports(), 0);
 }
 
 TEST(VtkLandmarkHandles, PutsTheNearestPointsWhereTheyBelong)

@@ -26,6 +26,10 @@ check_refused(simple.DiscreteForms(Input=sphere))
 marked = simple.MarkHandle(Input=sphere, RegionSource="All Points")
 check_refused(marked)
 check_refused(simple.CurvatureError(Input=sphere))
+surfaces = refused
+# Pieces of another kind.
+grid = simple.AppendDatasets(Input=[sphere])
+check_refused(simple.CarryAlong(Input=grid, Rest=sphere, Deformed=sphere))
 
 # The reader gives the whole bar to the first rank.
 bent = simple.RotationInvariantDeformation(Input=mark_ends(open_bar("MpiDistributed")))
@@ -34,5 +38,7 @@ refresh(bent)
 check(bent.NumberOfFreePoints > 100, "free points")
 check(bent.GetDataInformation().GetNumberOfPoints() == 354, "the bar")
 
-for text in ("The surface is distributed over 2 ranks", "gather it on one rank (Aggregate Dataset"):
-    print("expected %d times: %s" % (refused, text), flush=True)
+for count, text in ((surfaces, "The surface is distributed over 2 ranks"),
+                    (refused - surfaces, "The mesh is distributed over 2 ranks"),
+                    (refused, "gather it on one rank (Aggregate Dataset")):
+    print("expected %d times: %s" % (count, text), flush=True)
