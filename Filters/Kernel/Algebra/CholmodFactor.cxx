@@ -248,10 +248,10 @@ public:
   std::size_t GetBytes() const override { return this->Common.memory_inuse; }
 
 private:
-  /// The order of the unknowns by that of their groups, by nested dissection (METIS), with
-  /// half of the operations of AMD's order and four fifths of its entries on surfaces.
-  /// Of unknowns one by one it takes longer than it saves. Empty where there are no groups
-  /// or CHOLMOD was built without METIS.
+  /// The order of the unknowns by that of their groups: nested dissection (METIS), with half
+  /// of the operations of AMD's order and four fifths of its entries, where that saves more
+  /// than it takes. Of unknowns one by one it never does. Empty where there are no groups or
+  /// CHOLMOD was built without METIS.
   std::vector<typename Api::Index> OrderOfGroups(const SparseMatrix& lower)
   {
     const int size = this->Limits.GroupSize;
@@ -261,7 +261,8 @@ private:
     }
     const SparseMatrix pattern = GroupPattern(lower, size);
     View<typename Api::Index> groups(pattern);
-    this->Common.method[0].ordering = CHOLMOD_METIS;
+    constexpr Eigen::Index fewest = 50000; // on surfaces
+    this->Common.method[0].ordering = pattern.rows() < fewest ? CHOLMOD_AMD : CHOLMOD_METIS;
     cholmod_factor* ordered = Api::Analyze(groups.Get(), &this->Common);
     std::vector<typename Api::Index> order;
     for (std::size_t i = 0; ordered && i < ordered->n; ++i)
