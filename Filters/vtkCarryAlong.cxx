@@ -6,6 +6,7 @@
 #include "Bridge/PointArrays.h"
 #include "Kernel/Deformation/SurfaceBinding.h"
 #include "Kernel/Deformation/TetrahedronGraph.h"
+#include "Kernel/Mesh/Geometry.h"
 
 #include "vtkCellData.h"
 #include "vtkCellType.h"
@@ -23,6 +24,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -99,6 +101,36 @@ void TurnArrays(vtkPointData* arrays, const cartan::Matrices& rotations, bool al
       arrays->AddArray(Turned(array, rotations));
     }
   }
+}
+
+/// How far rounding may carry points, in parts of the size of the surface.
+constexpr double LargestRounding = 1e-4;
+
+/// Which points follow parts of the surface that are so small that the digits of its
+/// coordinates do not tell how they turn; empty where there are none.
+std::string DescribeBlurredTurns(const cartan::SurfaceBinding& binding,
+  const cartan::Points& current, const Eigen::Vector3d& origin, int type)
+{
+  const double largest = (current.rowwise() + origin.transpose()).cwiseAbs().maxCoeff();
+  const double digits = type == VTK_FLOAT ? std::numeric_limits<float>::epsilon()
+                                          : std::numeric_limits<double>::epsilon();
+  const Eigen::VectorXd errors = binding.RoundingErrors(current, 0.5 * digits * largest);
+  const double size = cartan::BoundingDiagonal(current);
+  cartan::IdSample blurred;
+  for (Eigen::Index i = 0; i < errors.size(); ++i)
+  {
+    if (errors[i] > LargestRounding * size)
+    {
+      blurred.Add(i);
+    }
+  }
+  return blurred.IsEmpty()
+    ? std::string()
+    : "Rounding decides about " + blurred.Describe("carried point", "carried points") +
+      ": the parts of the surface that are nearest are so small that the digits of its "
+      "coordinates do not tell how they turn. Deform the surface in double precision, or without "
+      "its small parts (Prepare Surface, "
+      "Minimum Component Area).";
 }
 
 /// The tetrahedra among the cells that are turned inside out, relative to `origin` at rest
@@ -255,6 +287,8 @@ void vtkCarryAlong::Execute(cartan::FilterRun& run)
   const cartan::SurfaceBinding& binding = kept->Binding;
   const cartan::SurfaceBinding::Carried carried =
     binding.Evaluate(*matched.Positions[1], run.Context().Part(0.7, 0.95));
+  run.Warn(DescribeBlurredTurns(
+    binding, *matched.Positions[1], matched.Origins[1], run.Input(2)->GetPoints()->GetDataType()));
   vtkNew<vtkPoints> points;
   points->SetDataType(input->GetPoints()->GetDataType());
   points->SetNumberOfPoints(input->GetNumberOfPoints());

@@ -14,6 +14,7 @@
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -168,23 +169,39 @@ std::string UpdateNormals(vtkDataSetAttributes* attributes, vtkIdType count,
   return {};
 }
 
-/// What is left of edges where a part has shrunk to a point, in parts of the size.
+/// What is left of the width of triangles where a part has shrunk to a point or a line, in parts
+/// of the size.
 constexpr double Crushed = 1e-10;
 
-/// Vertex normals; zero too where all neighbors are nearer than `least`, and rounding makes
-/// the triangles.
+/// Whether rounding makes the triangles around a vertex: all have less area than `least` times
+/// their longest edge.
+bool IsCrushed(const TriangleMesh& mesh, const Points& points, int v, double least)
+{
+  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  {
+    if (mesh.LeftTriangle(d) >= 0)
+    {
+      const Eigen::Vector3d edge = points.row(mesh.Neighbor(d)) - points.row(v);
+      const Eigen::Vector3d next = points.row(mesh.Opposite(d)) - points.row(v);
+      const double longest =
+        std::max({ edge.squaredNorm(), next.squaredNorm(), (next - edge).squaredNorm() });
+      if (0.25 * edge.cross(next).squaredNorm() > least * least * longest)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Vertex normals; zero too where the triangles are crushed.
 Points NormalsOfVertices(
   const TriangleMesh& mesh, const Points& points, double least, const ExecutionContext& context)
 {
   Points normals = VertexNormals(mesh, points, context);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    bool isPoint = true;
-    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v) && isPoint; ++d)
-    {
-      isPoint = (points.row(mesh.Neighbor(d)) - points.row(v)).cwiseAbs().maxCoeff() <= least;
-    }
-    if (isPoint)
+    if (IsCrushed(mesh, points, v, least))
     {
       normals.row(v).setZero();
     }

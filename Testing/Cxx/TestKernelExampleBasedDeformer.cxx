@@ -185,6 +185,48 @@ TEST(ExampleBasedDeformer, IsNearestToTheSpan)
   EXPECT_LT(last, 1e-9);
 }
 
+/// Of poses that fit alike, the rest pose and then the first example.
+TEST(ExampleBasedDeformer, TakesTheFirstOfPosesThatFitAlike)
+{
+  const Shape bar = Bar();
+  const HandleProblem problem = Problem(bar);
+  const Points bent = Pose(bar, 60.0);
+  const Points away = shapes::RandomRigidMotion(5, 3.0)(bent);
+  ExampleBasedDeformer twice(problem, { bent, away });
+  Deform(twice, TargetsOf(problem, bent));
+  EXPECT_LT((twice.GetWeights() - Eigen::Vector2d(1.0, 0.0)).norm(), 1e-9);
+  ExampleBasedDeformer resting(problem, { shapes::RandomRigidMotion(6, 3.0)(bar.Positions), bent });
+  Deform(resting, TargetsOf(problem, bar.Positions));
+  EXPECT_LT(resting.GetWeights().norm(), 1e-9);
+}
+
+/// Two points hold the surface but for a turn about their line. A bar that is a mirror image
+/// of itself, bent within its plane, stays in it.
+TEST(ExampleBasedDeformer, TurnsLeastAboutTheLineOfTwoPoints)
+{
+  const Shape bar = Bar();
+  const auto ends = [](const Eigen::Vector3d& p) {
+    return p.head<2>().norm() > 1e-9 ? 0 : p[2] < 1e-9 ? 1 : p[2] > 5.999 ? 2 : 0;
+  };
+  HandleTargets targets;
+  targets.Motions.resize(1);
+  targets.Motions[0].Translation = { 0.0, 1.5, -1.0 };
+  std::vector<Points> results;
+  for (const double noise : { 0.0, 1e-13 })
+  {
+    const HandleProblem problem = shapes::ProblemOf(shapes::Noisy(bar, noise), ends);
+    ASSERT_EQ(std::count(problem.Handle.begin(), problem.Handle.end(), 2), 1);
+    ExampleBasedDeformer deformer(problem, { Pose(bar, 90.0) });
+    results.push_back(Deform(deformer, targets).Positions);
+  }
+  EXPECT_LT(Distance(results[1], results[0]), 1e-7);
+  for (Eigen::Index v = 0; v < results[0].rows(); ++v)
+  {
+    // The triangles themselves are no mirror image.
+    EXPECT_LT(std::abs(results[0](v, 0) - bar.Positions(v, 0)), 0.1) << v;
+  }
+}
+
 TEST(ExampleBasedDeformer, StartsFromTheLastMotionWhenWarm)
 {
   const Shape bar = Bar();

@@ -73,6 +73,32 @@ Points Bent(const Shape& shape, VolumeCorrection correction, double angle)
 }
 }
 
+/// A double pyramid between two tops on the z axis, whose rim is a square of that radius.
+Shape DoublePyramid(double bottom, double top, double radius)
+{
+  Shape pyramid;
+  pyramid.Positions.resize(6, 3);
+  const double middle = 0.5 * (bottom + top);
+  pyramid.Positions << 0.0, 0.0, bottom, 0.0, 0.0, top, radius, 0.0, middle, 0.0, radius, middle,
+    -radius, 0.0, middle, 0.0, -radius, middle;
+  pyramid.Faces.resize(8, 3);
+  pyramid.Faces << 0, 3, 2, 0, 4, 3, 0, 5, 4, 0, 2, 5, 1, 2, 3, 1, 3, 4, 1, 4, 5, 1, 5, 2;
+  return pyramid;
+}
+
+/// The ray from the lower top passes through the upper one, where another body begins.
+TEST(HollowBodies, WhatTouchesABodyChangesNoDepth)
+{
+  const Shape body = DoublePyramid(0.0, 2.0, 1.0);
+  const double expected = ModelOf(body).LocalDepth[0];
+  for (const double radius : { 0.05, 1.0, 20.0 })
+  {
+    const Shape other = DoublePyramid(2.0, 3.0, radius);
+    EXPECT_NEAR(ModelOf(Union(body, other)).LocalDepth[0], expected, 1e-9) << radius;
+    EXPECT_NEAR(ModelOf(Union(other, body)).LocalDepth[6], expected, 1e-9) << radius;
+  }
+}
+
 TEST(HollowBody, TakesPartWithItsCavityAndWithoutAWord)
 {
   for (const bool isCavityFirst : { false, true })

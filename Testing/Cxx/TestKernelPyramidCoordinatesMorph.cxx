@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "AdviceWords.h"
 #include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Mesh/Geometry.h"
+#include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/PyramidCoordinatesMorph.h"
 #include "MorphShapes.h"
 #include "RealMeshes.h"
@@ -172,6 +174,25 @@ TEST(PyramidCoordinatesMorph, MorphsAScanBetweenPoses)
   EXPECT_LT(figures.EdgeRms, 0.001);
   EXPECT_NEAR(figures.Volume, 1.0, 0.002);
   EXPECT_EQ(morph.GetWarning(), "");
+}
+
+/// A thin tube that is twisted twice.
+TEST(PyramidCoordinatesMorph, SaysWhenItHasNotSettled)
+{
+  const Shape tube = shapes::OpenCylinder(3, 200, 0.5, 60.0);
+  const KeyFrames keys =
+    Keys(tube, { tube.Positions, morphshapes::Twist(tube, 720.0, -1.0, 61.0) });
+  PyramidCoordinatesMorph morph(keys);
+  const Points found = morph.Evaluate(0.5, {});
+  EXPECT_TRUE(found.allFinite());
+  EXPECT_NE(
+    morph.GetWarning().find(shapes::Advice("Use the Isometric method, which does not iterate.")),
+    std::string::npos)
+    << morph.GetWarning();
+  cartan::IsometricMorph isometric(keys);
+  const auto figures = MeasureMorph(keys, isometric.Evaluate(0.5, {}), 0.5);
+  EXPECT_EQ(isometric.GetWarning(), "");
+  EXPECT_LT(figures.EdgeRms, 1e-3);
 }
 
 TEST(PyramidCoordinatesMorph, StopsOnRequest)

@@ -370,6 +370,36 @@ TEST(SharedAxis, IsThatOfTheLongestRotationVector)
   EXPECT_EQ(found, Vector3d::UnitX());
 }
 
+/// Of all rotations that take a line to a line, by trying them.
+TEST(ClosestRotation, IsNearestToTheGuessWhereSeveralAreEquallyClose)
+{
+  shapes::Random random(7);
+  for (int i = 0; i < 50; ++i)
+  {
+    const Matrix3d guess = RandomRotation(random);
+    const Vector3d u = RandomRotation(random).col(0);
+    const Vector3d v = RandomRotation(random).col(0);
+    const Vector3d side = u.unitOrthogonal();
+    const Vector3d other = v.unitOrthogonal();
+    Matrix3d a = 2.0 * u * v.transpose(); // of a line
+    if (i % 2 == 1)                       // or inside out
+    {
+      a += side * other.transpose() - u.cross(side) * v.cross(other).transpose();
+    }
+    const Matrix3d found = cartan::ClosestRotationNear(a, guess);
+    EXPECT_LT((found.transpose() * found - Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_NEAR((found.transpose() * a).trace(), LargestTrace(a), 1e-9);
+    const double agreement = (found.transpose() * guess).trace();
+    for (int k = 0; k < 36; ++k)
+    {
+      const Matrix3d turned = RotationFromVector(Pi / 18.0 * k * u) * found;
+      EXPECT_LT((turned.transpose() * guess).trace(), agreement + 1e-9) << i << " " << k;
+    }
+  }
+  const Matrix3d guess = RandomRotation(random);
+  EXPECT_EQ(cartan::ClosestRotationNear(Matrix3d::Zero(), guess), guess);
+}
+
 TEST(SharedAxis, IsNoneWhereDirectionsDifferByMoreThanAMicroradian)
 {
   const Vector3d axis = Vector3d::UnitZ();

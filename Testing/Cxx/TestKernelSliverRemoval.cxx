@@ -54,6 +54,31 @@ TEST(SliverRemoval, NeedlesAreNotFelt)
   }
 }
 
+/// A cap in a triangle that is one itself.
+TEST(SliverRemoval, CapsInThinTrianglesAreNotFelt)
+{
+  for (const double height : { 3e-3, 3e-5 })
+  {
+    Shape thin = Tube();
+    const int t = MiddleTriangle(thin);
+    const int low = SplitTriangle(thin, t, { 0.5 * (1.0 - height), 0.5 * (1.0 - height), height });
+    int cap = 0;
+    while ((thin.Faces.row(cap).array() == low).count() == 0)
+    {
+      ++cap;
+    }
+    Shape spoiled = thin;
+    SplitTriangle(spoiled, cap, { 0.4, 0.3, 0.3 });
+    const Eigen::Index count = thin.Positions.rows();
+    for (const auto& [name, make] : deformers::All())
+    {
+      const Points expected = Deform(make, cartan::WithoutSlivers(ProblemOf(thin)));
+      const Points found = Deform(make, cartan::WithoutSlivers(ProblemOf(spoiled)));
+      EXPECT_LT((found.topRows(count) - expected).cwiseAbs().maxCoeff(), 1e-9) << name;
+    }
+  }
+}
+
 /// Several needles at one vertex leave triangles that are tiny as a whole. One of
 /// their points stays, not always the same.
 TEST(SliverRemoval, CrowdsAreNotFelt)

@@ -122,6 +122,21 @@ TEST(TurnTable, ServesFullTurns)
   ExpectAsSolved(tabulated, solved, 720.0);
 }
 
+/// Where no table is good enough, motions are solved for, those without a turn too.
+TEST(TurnTable, IsNotReadWhereItCouldNotBeMade)
+{
+  const HandleProblem problem = BarProblem();
+  ShapePreservingDeformer tabulated(problem);
+  ShapePreservingDeformer solved(problem);
+  tabulated.SetTurnTable({ Pi, 1e-30 });
+  for (const double degrees : { 0.0, 20.0, 0.0 })
+  {
+    const HandleTargets targets = One({ 1.0, 0.0, 0.0 }, degrees, { 0.3, 0.2, 0.1 });
+    EXPECT_LT(Distance(Positions(tabulated, targets), Positions(solved, targets)), 1e-12);
+    EXPECT_EQ(tabulated.GetUsedTable(), nullptr);
+  }
+}
+
 TEST(TurnTable, CarriesTheNeutralOffset)
 {
   const HandleProblem problem = BarProblem();

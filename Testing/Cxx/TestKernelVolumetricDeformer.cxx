@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Backwards.h"
 #include "Kernel/Deformation/LatticeGraph.h"
 #include "Kernel/Deformation/PoissonDeformer.h"
 #include "Kernel/Deformation/VolumetricDeformer.h"
@@ -7,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace
@@ -298,5 +301,35 @@ TEST(VolumetricDeformer, RefusesWhatHasNoInsideAndLatticesThatAreTooFine)
   shapes::Shape flat = shapes::Icosphere(1);
   flat.Positions.col(2).setZero();
   EXPECT_NE(refusal(flat, 0.0).find("encloses no volume"), std::string::npos);
+}
+
+/// A bar that is curled so that its ends all but touch: the outer layer is of many heights.
+TEST(VolumetricDeformer, OrderOfVerticesDoesNotMatter)
+{
+  const shapes::Shape bar = shapes::Noisy(shapes::Bar(3, 3, 18, { 1.0, 1.0, 6.0 }, true), 0.01);
+  HandleProblem problem = shapes::ProblemOf(bar, shapes::EndsOfBar(), { 1 });
+  const double lowest = bar.Positions.col(2).minCoeff();
+  shapes::Shape curled = bar;
+  for (Eigen::Index v = 0; v < curled.Positions.rows(); ++v)
+  {
+    const double angle = shapes::Pi * (bar.Positions(v, 2) - lowest) / 6.0;
+    const double arm = 0.62 + bar.Positions(v, 1) - bar.Positions.col(1).mean();
+    curled.Positions.row(v) << bar.Positions(v, 0), arm * std::cos(angle), arm * std::sin(angle);
+  }
+  problem.Rest = std::make_shared<const Points>(curled.Positions);
+  const shapes::Shape backwards = shapes::Backwards(curled);
+  HandleProblem other = problem;
+  other.Mesh =
+    std::make_shared<const cartan::TriangleMesh>(backwards.NumberOfVertices(), backwards.Faces);
+  other.Rest = std::make_shared<const Points>(backwards.Positions);
+  std::reverse(other.Handle.begin(), other.Handle.end());
+  HandleMotion motion = RigidMotion();
+  motion.Translation = { 0.2, -0.1, 0.3 };
+  VolumetricDeformer first = LatticeDeformer(problem);
+  VolumetricDeformer second = LatticeDeformer(other);
+  const Points expected = Deform(first, { motion }).Positions;
+  const Points found = Deform(second, { motion }).Positions.colwise().reverse();
+  EXPECT_GT(Distance(expected, curled.Positions), 0.1);
+  EXPECT_LT(Distance(found, expected), 1e-9);
 }
 }

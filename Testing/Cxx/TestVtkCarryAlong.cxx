@@ -178,6 +178,41 @@ TEST_F(VtkCarryAlong, KeepsThePrecisionAndFollowsTime)
   EXPECT_EQ(info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()), 2);
 }
 
+/// A bar, and beside it one of 1e-6 of its size that points follow.
+TEST_F(VtkCarryAlong, SaysWhereDigitsDoNotTellATurn)
+{
+  const shapes::RigidMotion motion = shapes::RandomRigidMotion(3);
+  shapes::Shape small = shapes::Bar(2, 2, 2, { 3e-6, 3e-6, 3e-6 });
+  small.Positions.rowwise() += Eigen::RowVector3d(3.0, 0.0, 2.0);
+  const shapes::Shape both = shapes::Union(shapes::Bar(4, 4, 16, { 1.0, 1.0, 4.0 }), small);
+  shapes::Shape around = shapes::Icosphere(1);
+  around.Positions = 0.2 * around.Positions.rowwise().normalized();
+  around.Positions.rowwise() += Eigen::RowVector3d(3.0, 0.0, 2.0);
+  this->Filter->SetInputData(MakePolyData(around));
+  const auto move = [&](vtkPolyData* rest)
+  {
+    this->Filter->SetRestData(rest);
+    this->Filter->SetDeformedData(Moved(rest,
+      [&](const Eigen::RowVector3d& p) -> Eigen::RowVector3d
+      { return (motion.Rotation * p.transpose() + motion.Translation).transpose(); }));
+    this->Update();
+    return PointsOf(vtkPolyData::SafeDownCast(this->Filter->GetCarried()));
+  };
+  const std::string advice =
+    Advice("Deform the surface in double precision, or without its small parts (Prepare Surface, "
+           "Minimum Component Area).");
+  move(MakePolyData(both, VTK_FLOAT));
+  ExpectMessage(
+    this->Log->Warnings, { "do not tell how they turn", "42 carried points (ids 0, 1", advice });
+
+  EXPECT_LT((move(MakePolyData(both)) - motion(around.Positions)).cwiseAbs().maxCoeff(), 1e-6);
+  ExpectQuiet(*this->Log);
+  const auto without = vtktest::Prepared(MakePolyData(both, VTK_FLOAT),
+    [](vtkPrepareSurface* prepare) { prepare->SetMinimumComponentArea(1e-6); });
+  EXPECT_LT((move(without) - motion(around.Positions)).cwiseAbs().maxCoeff(), 1e-4);
+  ExpectQuiet(*this->Log);
+}
+
 TEST_F(VtkCarryAlong, SaysWhatIsWrong)
 {
   const auto points = MakePolyData(shapes::Icosphere(1));

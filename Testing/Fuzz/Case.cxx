@@ -4,6 +4,7 @@
 #include "Copies.h"
 #include "Defects.h"
 #include "Deformed.h"
+#include "MoreCases.h"
 #include "Settings.h"
 #include "Shapes.h"
 #include "SteeringCases.h"
@@ -429,6 +430,8 @@ Case MakeCase(std::uint64_t seed, const std::string& filter)
   }
   made.Settings = RandomSettings(made.Filter, made.Surface, random);
   AddSteering(made, random);
+  Random ofChoices(seed * 0xd1b54a32d192ed03u + 11);
+  AddChoices(made, ofChoices);
   return made;
 }
 }

@@ -52,6 +52,9 @@ struct Case
   std::vector<std::vector<Eigen::Vector3d>> Others;
   /// Points of no surface, joined by a line: landmarks, where they go, a drawn curve.
   std::vector<std::vector<Eigen::Vector3d>> Clouds;
+  std::vector<Ids> CloudKeys;  ///< of the clouds' points: points of the surface, -1 for none
+  std::vector<Ids> CloudNames; ///< of the clouds' points; both empty, or one for each cloud
+  std::vector<Ids> Tetrahedra; ///< of the points of the surface, for filters that take them
   std::vector<Setting> Settings;
   std::vector<HandleMotion> Motions;
 

@@ -18,9 +18,10 @@ namespace
 bool MayBeNaN(const std::string& name)
 {
   static const std::set<std::string> names = { "AreaRatio", "EdgeLengthRatio", "LocalVolume",
-    "LocalVolumeRatio", "RelativeVolumeChange", "Angle", "Reference", "Current", "RelativeChange",
-    "Stretch1", "Stretch2", "ConstraintWeight", "Weight" };
-  return names.count(name) > 0 || name.compare(0, 20, "RelativeVolumeChange") == 0;
+    "LocalVolumeRatio", "RelativeVolumeChange", "RelativeAreaChange", "Angle", "Reference",
+    "Current", "RelativeChange", "Stretch1", "Stretch2", "ConstraintWeight", "Weight" };
+  // "Current of Volume": a row of a table.
+  return names.count(name.substr(0, name.find(" of "))) > 0;
 }
 
 /// Fields whose values depend on more than the surface, or whose sign is arbitrary.
@@ -37,20 +38,19 @@ bool IsComparable(const Field& field, const Relation& relation)
   const bool isReordered = !relation.Order.empty();
   if (isReordered &&
     (field.Where == Field::OfCells ||
-      (field.Where == Field::OfTable && field.Name != "Eigenvalue")))
+      (field.Where == Field::OfTable && field.Name != "Eigenvalue" &&
+        field.Name.find(" of ") == std::string::npos)))
   {
     return false;
   }
-  // Anchors are numbered in the order of points where handles are, components always.
-  const bool isNumbered = field.Name.find(" of component ") != std::string::npos;
-  if (isReordered &&
-    (isNumbered || field.Name.compare(0, 12, "FrameTangent") == 0 || field.Name == "Anchor"))
+  // Anchors are numbered in the order of points where handles are.
+  if (isReordered && (field.Name.compare(0, 12, "FrameTangent") == 0 || field.Name == "Anchor"))
   {
     return false;
   }
   // Rows of different units; an energy whose unit depends on the weights.
   static const std::set<std::string> ofManyUnits = { "Reference", "Current", "RigidityEnergy" };
-  if (relation.Map.Scale != 1.0 && ofManyUnits.count(field.Name) > 0)
+  if (relation.Map.Scale != 1.0 && ofManyUnits.count(field.Name.substr(0, field.Name.find(" of "))))
   {
     return false;
   }

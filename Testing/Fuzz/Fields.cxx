@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Fields.h"
 
+#include "ComponentFields.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -252,6 +254,7 @@ std::vector<Field> FieldsOf(const Case& of, const Outcome& outcome, vtkPolyData*
     }
   }
   MarkArbitrary(of, fields);
+  NameByPoints(of, outcome, fields);
   SortByAnchors(outcome, fields);
   return fields;
 }

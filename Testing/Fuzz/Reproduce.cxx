@@ -28,7 +28,7 @@ std::string List(const Values& values, Eigen::Index count)
   text << std::setprecision(17);
   for (Eigen::Index i = 0; i < count; ++i)
   {
-    const double value = values[static_cast<std::size_t>(i)];
+    const auto value = static_cast<double>(values[static_cast<std::size_t>(i)]);
     text << (i > 0 ? ", " : "");
     if (std::isfinite(value))
     {
@@ -108,6 +108,14 @@ void PrintMotions(std::ostream& out, const Case& of)
   }
 }
 
+/// ", name=[...]" of one cloud, if it has such a list.
+std::string Option(const char* name, std::size_t cloud, const std::vector<Ids>& lists)
+{
+  return cloud < lists.size() ? std::string(", ") + name + "=[" +
+      List(lists[cloud], static_cast<Eigen::Index>(lists[cloud].size())) + "]"
+                              : "";
+}
+
 void PrintInputs(std::ostream& out, const Case& of)
 {
   if (of.Filter == "SurfaceMorph")
@@ -151,10 +159,20 @@ void PrintInputs(std::ostream& out, const Case& of)
       {
         out << "(" << List(point) << "), ";
       }
-      out << "]))\n";
+      out << "]" << Option("keys", i, of.CloudKeys) << Option("names", i, of.CloudNames) << "))\n";
     }
     out << "    for port, surface in enumerate(surfaces):\n"
         << "        filter.SetInputData(port, surface)\n";
+    if (!of.Tetrahedra.empty())
+    {
+      out << "    filter.SetInputData(" << (of.Filter == "CarryAlong" ? 0 : 1)
+          << ", grid(surfaces[0], [";
+      for (const Ids& ids : of.Tetrahedra)
+      {
+        out << "(" << List(ids, 4) << "), ";
+      }
+      out << "]))\n";
+    }
     if (of.Surface.Find("Region"))
     {
       out << "    filter.SetRegionArrayName('Region')\n";
@@ -182,8 +200,9 @@ void PrintFunction(
   out << "    return updated(filter)\n";
 }
 
-const char* const Head = R"(from vtkmodules.vtkCommonCore import vtkPoints, vtkSMPTools
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkSphere
+const char* const Head =
+  R"(from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkSMPTools, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkSphere, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from vtkcartan import *
 
@@ -193,7 +212,7 @@ def read(name):
     reader.Update()
     return reader.GetOutput()
 
-def line(coordinates):
+def line(coordinates, keys=(), names=()):
     points = vtkPoints()
     points.SetDataTypeToDouble()
     cells = vtkCellArray()
@@ -203,6 +222,21 @@ def line(coordinates):
     data = vtkPolyData()
     data.SetPoints(points)
     data.SetLines(cells)
+    for array, name, values in ((vtkIdTypeArray(), 'SourcePoint', keys),
+                                (vtkStringArray(), 'label', ['L%d' % k for k in names])):
+        array.SetName(name)
+        for value in values:
+            array.InsertNextValue(value)
+        if len(values):
+            data.GetPointData().AddArray(array)
+    return data
+
+def grid(surface, cells):
+    data = vtkUnstructuredGrid()
+    data.SetPoints(surface.GetPoints())
+    data.GetPointData().ShallowCopy(surface.GetPointData())
+    for ids in cells:
+        data.InsertNextCell(10, 4, ids)
     return data
 
 def updated(filter):

@@ -14,7 +14,9 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPrepareSurface.h"
+#include "vtkStringArray.h"
 #include "vtkSurfaceDeformation.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 
@@ -119,18 +121,71 @@ std::vector<vtkSmartPointer<vtkPolyData>> InputsOf(const Case& of)
   return inputs;
 }
 
-/// With a line through all of them.
-vtkSmartPointer<vtkPolyData> ToLine(const std::vector<Eigen::Vector3d>& points, bool isFloat)
+/// A cloud with a line through all of its points.
+vtkSmartPointer<vtkPolyData> ToLine(const Case& of, std::size_t cloud)
 {
   Mesh line;
-  line.Points = points;
-  line.IsFloat = isFloat;
+  line.Points = of.Clouds[cloud];
+  line.IsFloat = of.Surface.IsFloat;
+  if (cloud < of.CloudKeys.size())
+  {
+    const Ids& ids = of.CloudKeys[cloud];
+    Array keys;
+    keys.Name = "SourcePoint";
+    keys.IsInteger = true;
+    keys.Values = Eigen::VectorXd(static_cast<Eigen::Index>(ids.size()));
+    std::copy(ids.begin(), ids.end(), keys.Values.data());
+    line.Arrays.push_back(keys);
+  }
   line.Lines.emplace_back();
   for (vtkIdType i = 0; i < line.NumberOfPoints(); ++i)
   {
     line.Lines[0].push_back(i);
   }
-  return ToPolyData(line);
+  const vtkSmartPointer<vtkPolyData> data = ToPolyData(line);
+  if (cloud < of.CloudNames.size())
+  {
+    vtkNew<vtkStringArray> names;
+    names->SetName("label");
+    for (const vtkIdType name : of.CloudNames[cloud])
+    {
+      names->InsertNextValue("L" + std::to_string(name));
+    }
+    data->GetPointData()->AddArray(names);
+  }
+  return data;
+}
+
+/// The tetrahedra, with the points and arrays of the surface.
+vtkSmartPointer<vtkUnstructuredGrid> ToGrid(const Case& of, vtkPolyData* surface)
+{
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  grid->SetPoints(surface->GetPoints());
+  grid->GetPointData()->ShallowCopy(surface->GetPointData());
+  for (const Ids& ids : of.Tetrahedra)
+  {
+    grid->InsertNextCell(VTK_TETRA, 4, ids.data());
+  }
+  return grid;
+}
+
+/// The carried points of a grid as points of the surface.
+vtkSmartPointer<vtkPolyData> ToSurface(vtkDataObject* output, vtkPolyData* input)
+{
+  auto* grid = vtkUnstructuredGrid::SafeDownCast(output);
+  if (!grid)
+  {
+    return vtkPolyData::SafeDownCast(output);
+  }
+  auto surface = vtkSmartPointer<vtkPolyData>::New();
+  if (grid->GetNumberOfCells() > 0)
+  {
+    surface->ShallowCopy(input);
+    surface->SetPoints(grid->GetPoints());
+    surface->GetPointData()->ShallowCopy(grid->GetPointData());
+    surface->GetFieldData()->ShallowCopy(grid->GetFieldData());
+  }
+  return surface;
 }
 
 void Connect(
@@ -172,7 +227,7 @@ void Connect(
   {
     for (std::size_t i = 0; i < of.Clouds.size(); ++i)
     {
-      filter->SetInputDataObject(static_cast<int>(i) + 1, ToLine(of.Clouds[i], of.Surface.IsFloat));
+      filter->SetInputDataObject(static_cast<int>(i) + 1, ToLine(of, i));
     }
   }
   else
@@ -182,6 +237,10 @@ void Connect(
       const auto i = static_cast<std::size_t>(port);
       filter->SetInputDataObject(port, i < inputs.size() ? inputs[i].Get() : nullptr);
     }
+  }
+  if (!of.Tetrahedra.empty())
+  {
+    filter->SetInputDataObject(of.Filter == "CarryAlong" ? 0 : 1, ToGrid(of, inputs[0]));
   }
   if (auto* deformation = vtkSurfaceDeformation::SafeDownCast(filter))
   {
@@ -224,7 +283,7 @@ Outcome Run(const Case& of, const Case* before)
   {
     outcome.IsInputChanged |= !DescribeDifference(inputs[i], untouched[i]).empty();
   }
-  outcome.Surface = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
+  outcome.Surface = ToSurface(filter->GetOutputDataObject(0), inputs[0]);
   outcome.Table = filter->GetNumberOfOutputPorts() > 1
     ? vtkTable::SafeDownCast(filter->GetOutputDataObject(1))
     : nullptr;

@@ -84,6 +84,18 @@ std::optional<Finding> CheckCarried(const Case& original, const Outcome&, Random
     : std::nullopt;
 }
 
+/// Which landmark of the second set has the name, or else the number, of one of the first.
+std::size_t PartnerOf(const Case& of, std::size_t i)
+{
+  if (of.CloudNames.empty())
+  {
+    return i;
+  }
+  const Ids& names = of.CloudNames[1];
+  return static_cast<std::size_t>(
+    std::find(names.begin(), names.end(), of.CloudNames[0][i]) - names.begin());
+}
+
 std::optional<Finding> CheckLandmarks(const Case& original, const Outcome& first, Random&)
 {
   if (!first.IsQuiet() || !first.Table)
@@ -102,8 +114,9 @@ std::optional<Finding> CheckLandmarks(const Case& original, const Outcome& first
   for (std::size_t i = 0; points && i < original.Clouds[0].size(); ++i)
   {
     const auto id = static_cast<vtkIdType>(points->Values(static_cast<Eigen::Index>(i), 0));
+    const std::size_t partner = PartnerOf(original, i);
     const Eigen::Vector3d target = original.Surface.Points[static_cast<std::size_t>(id)] +
-      original.Clouds[1][i] - original.Clouds[0][i];
+      original.Clouds[1][partner] - original.Clouds[0][i];
     const Field* targets = first.Find("TargetPosition", Field::OfPoints);
     const double off = (targets->Values.row(id).transpose() - target).norm();
     if (off > Allowed(original, first))

@@ -2,6 +2,7 @@
 #include "Algebra/ClosestRotation.h"
 
 #include "Algebra/Rotation.h"
+#include "Algebra/RotationNewton.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -33,5 +34,28 @@ Eigen::Matrix3d ClosestRotationOrNone(const Eigen::Matrix3d& transform)
   return transform.norm() > crushed && HasClosestRotation(transform)
     ? ProjectOnRotations(transform)
     : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+}
+
+Eigen::Matrix3d ClosestRotationNear(const Eigen::Matrix3d& a, const Eigen::Matrix3d& guess)
+{
+  const double size = a.norm();
+  if (!(size > 1e-300)) // its inverse would overflow
+  {
+    return guess;
+  }
+  const Eigen::Matrix3d scaled = (1.0 / size) * a;
+  Eigen::Matrix3d rotation = guess;
+  if (ClimbToClosestRotation(scaled, rotation))
+  {
+    return rotation;
+  }
+  if (HasClosestRotation(scaled))
+  {
+    return ProjectOnRotations(scaled);
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector3d from = guess * svd.matrixV().col(0);
+  const Eigen::Vector3d to = svd.matrixU().col(0);
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix() * guess;
 }
 }

@@ -4,6 +4,7 @@
 #include "Algebra/AndersonAcceleration.h"
 #include "Algebra/ClosestRotation.h"
 #include "Algebra/Rotation.h"
+#include "Deformation/JoinedVertices.h"
 #include "Deformation/RotationInvariantDeformer.h"
 #include "Deformation/ShapePreservingDeformer.h"
 #include "Mesh/Geometry.h"
@@ -95,6 +96,7 @@ Eigen::VectorXd AsRigidAsPossibleDeformer::GetVertexEnergies() const
   {
     energies[this->Cells.Vertices[cell]] = this->CellEnergies[cell];
   }
+  ShareEvenly(this->Problem.JoinedWith, energies);
   return energies;
 }
 
@@ -258,7 +260,7 @@ void AsRigidAsPossibleDeformer::Start(
         }
         if (cell >= this->Cells.ActiveCount && !this->HoldsRotation[cell])
         {
-          rotation = ProjectOnRotations(this->Covariance(cell), rotation);
+          rotation = ClosestRotationNear(this->Covariance(cell), rotation);
         }
       }
     });

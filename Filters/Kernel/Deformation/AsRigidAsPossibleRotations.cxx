@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The fit of rotations to positions, one of the two steps that take turns.
+#include "Algebra/ClosestRotation.h"
 #include "Algebra/Rotation.h"
 #include "Deformation/AsRigidAsPossibleDeformer.h"
 
@@ -71,7 +72,7 @@ void AsRigidAsPossibleDeformer::FitRotations(const ExecutionContext& context)
           const auto rotation = MatrixAt(before, cell);
           MatrixAt(this->Rotations, cell) = this->HoldsRotation[cell]
             ? Eigen::Matrix3d(rotation)
-            : ProjectOnRotations(covariance(cell), rotation);
+            : ClosestRotationNear(covariance(cell), rotation);
         }
       });
   };

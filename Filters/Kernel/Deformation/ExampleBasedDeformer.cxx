@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/ExampleBasedDeformer.h"
 
+#include "Algebra/ClosestRotation.h"
 #include "Algebra/Rotation.h"
 
 #include <Eigen/Cholesky>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace cartan
 {
 namespace
 {
-/// The part of E(x = 0) that is made of rounding.
-constexpr double RoundingPart = 1e-24;
-
-/// The part of the decrease that the slope promises which a step must bring.
-constexpr double SufficientDecrease = 1e-4;
-constexpr int Halvings = 12;
-
-/// The largest change of a weight in a step: from one example to the next. Beyond, slopes
-/// tell nothing.
-constexpr double LargestStep = 1.0;
+/// The part of a sum of products that is made of rounding.
+constexpr double RoundingOfSums = 1e-12;
 
 /// What examples that differ in nothing add to the curvature of E, so that their weights
 /// are determined.
@@ -149,11 +138,16 @@ void ExampleBasedDeformer::FitTogether()
   this->Fitted.setZero(this->System.NumberOfLocals(), 3);
   this->Fitted.topRows(unknowns) = this->System.Solve(this->Forces.topRows(unknowns));
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double size = 0.0;
   for (Eigen::Index i = 0; i < this->Forces.rows(); ++i)
   {
     covariance += this->Harmonic.row(i).transpose() * this->Forces.row(i);
+    size += this->Harmonic.row(i).norm() * this->Forces.row(i).norm();
   }
-  this->Rotation = ProjectOnRotations(covariance);
+  // What is held in one point, or in points on a line, leaves a turn open: the least one then.
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Identity();
+  this->Rotation =
+    covariance.norm() > RoundingOfSums * size ? ClosestRotationNear(covariance, none) : none;
   this->Values.resize(this->Harmonic.rows(), 3);
   for (Eigen::Index i = 0; i < this->Values.rows(); ++i)
   {
@@ -259,108 +253,6 @@ Eigen::MatrixXd ExampleBasedDeformer::GaussNewton() const
     }
   }
   return 2.0 * WithoutTurns(matrix, mixed, turns);
-}
-
-Eigen::VectorXd ExampleBasedDeformer::BestStart(const ExecutionContext& context)
-{
-  const int count = this->Span.NumberOfExamples();
-  Eigen::VectorXd best = Eigen::VectorXd::Zero(count);
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = -1; k < count; ++k)
-  {
-    Eigen::VectorXd weights = Eigen::VectorXd::Zero(count);
-    if (k >= 0)
-    {
-      weights[k] = 1.0;
-    }
-    const double energy = this->Evaluate(weights, context);
-    if (energy < least)
-    {
-      least = energy;
-      best = weights;
-    }
-  }
-  return best;
-}
-
-/// Shortens the step until it brings enough; returns the energy there. The energy is not
-/// below `before` if no step brings any.
-double ExampleBasedDeformer::StepDown(
-  double before, Eigen::VectorXd& step, const ExecutionContext& context)
-{
-  const Eigen::VectorXd from = this->Weights;
-  const double slope = this->Slope.dot(step);
-  double t = std::min(1.0, LargestStep / step.cwiseAbs().maxCoeff());
-  double after = before;
-  for (int i = 0; i < Halvings; ++i)
-  {
-    this->Weights = from + t * step;
-    after = this->Evaluate(this->Weights, context);
-    if (after <= before + SufficientDecrease * t * slope)
-    {
-      break;
-    }
-    t *= 0.5;
-  }
-  step *= t;
-  if (!(after < before))
-  {
-    this->Weights = from;
-    after = this->Evaluate(from, context);
-  }
-  return after;
-}
-
-void ExampleBasedDeformer::Descend(const ExecutionContext& context)
-{
-  double energy = this->Evaluate(this->Weights, context);
-  double size = 0.0;
-  const auto& triangles = this->Span.GetTriangles();
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-  {
-    size += triangles[t].Weights.dot(
-      this->Span.Edges(static_cast<Eigen::Index>(t)).colwise().squaredNorm().transpose());
-  }
-  bool isFresh = this->Curvature.size() == 0;
-  if (isFresh && energy > RoundingPart * size)
-  {
-    this->Curvature = this->GaussNewton();
-  }
-  this->Iterations = 0;
-  this->Converged = energy <= RoundingPart * size;
-  while (!this->Converged && this->Iterations < this->MaximumIterations)
-  {
-    context.Report(static_cast<double>(this->Iterations) / this->MaximumIterations);
-    const double before = energy;
-    const Eigen::VectorXd slope = this->Slope;
-    Eigen::VectorXd step = -this->Curvature.ldlt().solve(slope);
-    if (!(slope.dot(step) < 0.0))
-    {
-      step.setZero();
-    }
-    energy = step.isZero(0.0) ? before : this->StepDown(before, step, context);
-    ++this->Iterations;
-    if (!(energy < before))
-    {
-      // What is left is rounding, unless the curvature was that of another place.
-      this->Converged = isFresh;
-      this->Curvature = isFresh ? this->Curvature : this->GaussNewton();
-      isFresh = true;
-      continue;
-    }
-    isFresh = false;
-    this->Converged =
-      step.cwiseAbs().maxCoeff() <= this->Tolerance || energy <= RoundingPart * size;
-    // BFGS: the curvature along the step becomes that which it found.
-    const Eigen::VectorXd change = this->Slope - slope;
-    const Eigen::VectorXd expected = this->Curvature * step;
-    if (change.dot(step) > 1e-3 * expected.dot(step))
-    {
-      this->Curvature += change * change.transpose() / change.dot(step) -
-        expected * expected.transpose() / expected.dot(step);
-    }
-  }
-  this->Distance = size > 0.0 ? std::sqrt(std::max(energy, 0.0) / size) : 0.0;
 }
 
 void ExampleBasedDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,

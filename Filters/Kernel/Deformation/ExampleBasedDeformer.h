@@ -26,8 +26,10 @@ namespace cartan
 /// the few w alone. BFGS steps descend it, from the Gauss-Newton matrix; each needs one
 /// solve for three right-hand sides, that matrix one for each example.
 ///
-/// The search starts at that of the rest pose and the examples which fits best, or from the
-/// last motion's weights. Weights are not limited: beyond 1 and below 0 they extrapolate.
+/// Handles in one point or on a line leave a turn open: of the Q that fit alike the least is
+/// taken. The search starts at that of the rest pose and the examples which fits best, of
+/// those that fit alike at the first, or from the last motion's weights. Weights are not limited:
+/// beyond 1 and below 0 they extrapolate.
 class ExampleBasedDeformer : public SurfaceDeformer
 {
 public:
@@ -79,6 +81,7 @@ private:
   void FitTogether();
   double SumResiduals();
   Eigen::MatrixXd GaussNewton() const;
+  double SizeOfEdges() const;
   Eigen::VectorXd BestStart(const ExecutionContext& context);
   void Descend(const ExecutionContext& context);
   double StepDown(double before, Eigen::VectorXd& step, const ExecutionContext& context);

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/FrameDeformer.h"
 
-#include "Deformation/JoinedVertices.h"
-#include "Measure/VolumeClosing.h"
-
 #include <cmath>
 
 namespace cartan
@@ -72,8 +69,8 @@ std::size_t FrameDeformer::GetBytes() const
   return this->GetBaseBytes() + this->FrameSystem->GetBytes() +
     (this->PositionSystem == this->FrameSystem ? 0 : this->PositionSystem->GetBytes()) +
     (this->Model ? this->Model->GetBytes() : 0) +
-    TotalBytes(*this->EdgeWeights, this->RestHeights, this->HandleVertices, this->Transforms,
-      this->TriangleIds, this->TriangleTransforms, this->TriangleWeights) +
+    TotalBytes(*this->EdgeWeights, this->JoinedOffsets, this->RestHeights, this->HandleVertices,
+      this->Transforms, this->TriangleIds, this->TriangleTransforms, this->TriangleWeights) +
     (this->Table ? this->Table->GetBytes() : 0);
 }
 
@@ -149,7 +146,9 @@ bool FrameDeformer::DeformByTable(
   const double angle = angles[most];
   const Eigen::VectorXd ratios =
     largest > 0.0 ? Eigen::VectorXd(angles / angle) : Eigen::VectorXd::Ones(1);
-  if (!this->HasTable(ratios, context) || std::abs(angle) > this->Table->GetRange())
+  // A table that could not be made has the range 0.
+  const double range = this->HasTable(ratios, context) ? this->Table->GetRange() : 0.0;
+  if (range == 0.0 || std::abs(angle) > range)
   {
     return false;
   }
@@ -222,7 +221,7 @@ TurnsOfAngle FrameDeformer::TurnsWith(const Eigen::VectorXd& ratios) const
 const Points* FrameDeformer::NeutralOffsets() const
 {
   return this->PreservesVolume() && this->Correction == VolumeCorrection::NeutralOffset
-    ? &this->Model->Offsets
+    ? (this->JoinedOffsets.rows() > 0 ? &this->JoinedOffsets : &this->Model->Offsets)
     : nullptr;
 }
 
@@ -356,83 +355,6 @@ void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices&
   {
     const int v = system.Vertex(i);
     result.Positions.row(v) = this->Problem.Rest->row(v) + solution.row(i);
-  }
-}
-
-void FrameDeformer::ScaleFrames(
-  const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context)
-{
-  const TriangleMesh& mesh = *this->Problem.GetParted();
-  FollowJoined(this->Problem.JoinedWith, result.Positions);
-  if (this->RestHeights.size() == 0)
-  {
-    this->RestHeights = ColumnHeights(mesh, *this->Problem.Rest, this->Model->LocalDepth, context);
-  }
-  // The depth of the surface at rest serves the deformed one too.
-  const Eigen::VectorXd heights =
-    ColumnHeights(mesh, result.Positions, this->Model->LocalDepth, context);
-  Matrices scaled = this->Transforms;
-  for (int i = 0; i < this->PositionSystem->NumberOfLocals(); ++i)
-  {
-    const int v = this->PositionSystem->Vertex(i);
-    if (!this->Model->EnclosesVolume[mesh.Component(v)] || !this->Model->IsMeasured[v])
-    {
-      continue;
-    }
-    const double ratio = this->RestHeights[v] / heights[v];
-    if (std::isfinite(ratio) && ratio > 0.0)
-    {
-      result.FrameScale[v] = std::sqrt(ratio);
-      scaled.row(v) *= result.FrameScale[v];
-    }
-  }
-  this->SolvePositions(targets, scaled, result, context);
-}
-
-void FrameDeformer::CloseVolumes(Points& positions)
-{
-  const HandleLaplacian& system = *this->PositionSystem;
-  const std::vector<int>& joinedWith = this->Problem.JoinedWith;
-  const auto solve = [&system, &joinedWith](Points gradient)
-  {
-    for (std::size_t v = 0; v < joinedWith.size(); ++v)
-    {
-      if (joinedWith[v] != static_cast<int>(v))
-      {
-        gradient.row(joinedWith[v]) += gradient.row(static_cast<Eigen::Index>(v));
-      }
-    }
-    Eigen::MatrixXd rightHandSide(system.NumberOfUnknowns(), 3);
-    for (int i = 0; i < system.NumberOfUnknowns(); ++i)
-    {
-      rightHandSide.row(i) = gradient.row(system.Vertex(i));
-    }
-    const Eigen::Map<const Eigen::MatrixXd> solution = system.Solve(rightHandSide);
-    Points direction = Points::Zero(gradient.rows(), 3);
-    for (int i = 0; i < system.NumberOfUnknowns(); ++i)
-    {
-      direction.row(system.Vertex(i)) = solution.row(i);
-    }
-    FollowJoined(joinedWith, direction);
-    return direction;
-  };
-  // Bodies that hang together are closed each by a step of its own, between which
-  // joined vertices must follow one of them: each round leaves the others less.
-  const int rounds = joinedWith.empty() ? 1 : 20;
-  IdSample notClosed;
-  for (int round = 0; round < rounds; ++round)
-  {
-    FollowJoined(joinedWith, positions);
-    notClosed = cartan::CloseVolumes(*this->Problem.GetParted(), this->Model->EnclosesVolume,
-      this->Model->Volumes, solve, positions);
-  }
-  if (!notClosed.IsEmpty())
-  {
-    this->Warning += (this->Warning.empty() ? "" : " ");
-    this->Warning += "The volume of " +
-      notClosed.Renamed(this->Model->Names).Describe("component", "components") +
-      " could not be closed: no displacement of its free points along the volume's gradient "
-      "gives it back. Leave more points free, or deform less.";
   }
 }
 }

@@ -42,11 +42,7 @@ public:
   /// Of HandleProblem::GetParted(), without slivers. Needed for any volume correction and
   /// for closing; empty where there is none. Has no effect on components that enclose
   /// no volume.
-  void SetVolumeModel(std::shared_ptr<const VolumeModel> model)
-  {
-    this->RestHeights.resize(model == this->Model ? this->RestHeights.size() : 0);
-    this->Model = std::move(model);
-  }
+  void SetVolumeModel(std::shared_ptr<const VolumeModel> model);
   const std::shared_ptr<const VolumeModel>& GetVolumeModel() const { return this->Model; }
 
   /// With a range above 0, motions that turn the handles about one axis in a fixed ratio are
@@ -145,6 +141,7 @@ private:
   VolumeCorrection Correction = VolumeCorrection::None;
   bool Close = false;
   std::shared_ptr<const VolumeModel> Model;
+  Points JoinedOffsets;        ///< its Offsets, at joined vertices their means; empty without those
   Eigen::VectorXd RestHeights; ///< ColumnHeights at rest, empty until first needed
   Points TriangleWeights;      ///< CornerWeights, empty until first needed
 

@@ -136,6 +136,23 @@ void AddShares(const std::vector<int>& joinedWith, Eigen::VectorXd& shares)
   }
 }
 
+void ShareEvenly(const std::vector<int>& joinedWith, Eigen::VectorXd& values)
+{
+  Eigen::VectorXd copies = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(joinedWith.size()));
+  AddShares(joinedWith, copies);
+  for (std::size_t v = 0; v < joinedWith.size(); ++v)
+  {
+    if (joinedWith[v] != static_cast<int>(v))
+    {
+      values[static_cast<Eigen::Index>(v)] = values[joinedWith[v]] / copies[joinedWith[v]];
+    }
+  }
+  for (Eigen::Index v = 0; v < copies.size(); ++v)
+  {
+    values[v] /= joinedWith[static_cast<std::size_t>(v)] == v ? copies[v] : 1.0;
+  }
+}
+
 HandleProblem WithJoinedVertices(HandleProblem problem)
 {
   if (problem.JoinedWith.empty())

@@ -15,6 +15,10 @@ void HoldTogether(const Eigen::VectorXd& ids, HandleProblem& problem);
 /// Adds to the share of each vertex those of the vertices that it stands for: #V.
 void AddShares(const std::vector<int>& joinedWith, Eigen::VectorXd& shares);
 
+/// The other way round: each of the vertices that are one gets an equal part of the value
+/// of the one that stands for them: #V.
+void ShareEvenly(const std::vector<int>& joinedWith, Eigen::VectorXd& values);
+
 /// The problem on a mesh with one vertex for all that are held together: with P, which
 /// gives all of them its values, and any matrix A that is a sum over edges or
 /// triangles, a method that does not know of joined vertices solves with P^T A P. The
@@ -34,5 +38,25 @@ void FollowJoined(const std::vector<int>& joinedWith, Values& values)
       values.row(static_cast<Eigen::Index>(v)) = values.row(joinedWith[v]).eval();
     }
   }
+}
+
+/// Gives all vertices that are one the mean of their values, a row per vertex. What is equal
+/// stays to the last bit. Nothing where no vertices are joined, or there are no values.
+template <typename Values>
+void MeetHalfway(const std::vector<int>& joinedWith, Values& values)
+{
+  Eigen::VectorXd copies = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(joinedWith.size()));
+  AddShares(joinedWith, copies);
+  Values sums = values;
+  sums.setZero();
+  for (std::size_t v = 0; v < joinedWith.size() && values.rows() > 0; ++v)
+  {
+    sums.row(joinedWith[v]) += values.row(static_cast<Eigen::Index>(v)) - values.row(joinedWith[v]);
+  }
+  for (Eigen::Index v = 0; v < copies.size() && values.rows() > 0; ++v)
+  {
+    values.row(v) += sums.row(v) / copies[v];
+  }
+  FollowJoined(joinedWith, values);
 }
 }

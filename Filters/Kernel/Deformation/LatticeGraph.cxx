@@ -374,16 +374,15 @@ private:
     {
       const int v = this->Mesh.Origin(d);
       const int w = this->Mesh.Neighbor(d);
-      const double weight =
-        OuterShare * std::max(0.0, this->EdgeWeights[d]) * 2.0 * heights[v] / this->Spacing;
+      const double weight = OuterShare * std::max(0.0, this->EdgeWeights[d]) / this->Spacing;
       if (outer[v] < 0 || outer[w] < 0 || weight == 0.0)
       {
         continue;
       }
-      this->Edges.push_back({ outer[v], w, 0.5 * weight });
+      this->Edges.push_back({ outer[v], w, weight * heights[v] });
       if (v < w)
       {
-        this->Edges.push_back({ outer[v], outer[w], weight });
+        this->Edges.push_back({ outer[v], outer[w], weight * (heights[v] + heights[w]) });
       }
     }
   }

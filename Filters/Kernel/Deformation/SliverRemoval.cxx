@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/SliverRemoval.h"
 
+#include "Deformation/Carriers.h"
 #include "Deformation/Slivers.h"
 #include "Mesh/EdgeFlips.h"
 #include "Mesh/TriangleShape.h"
@@ -14,19 +15,11 @@ namespace cartan
 {
 namespace
 {
-/// Of twice the area in parts of the longest edge squared: what can carry a rider.
-constexpr double SmallestCarrier = 1e-2;
-
 /// How far triangles may turn when a vertex of theirs moves by a short edge.
 const double LeastCosine = 0.5;
 
 /// What flips may do; see WithoutSlivers.
 constexpr FlipOptions Flips{ 0.5236, 1e-2 };
-
-double RelativeHeight(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
-{
-  return (b - a).cross(c - a).norm() / LongestEdgeSquared(a, b, c);
-}
 
 double CosineOfNormals(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   const Eigen::Vector3d& moved, const Eigen::Vector3d& apex)
@@ -200,7 +193,7 @@ private:
         return;
       }
     }
-    if (!this->CanCarry(corners))
+    if (!CanCarry(this->Rest, corners, v))
     {
       return;
     }
@@ -328,7 +321,7 @@ private:
         {
           return false;
         }
-        const double height = RelativeHeight(this->At(stays), this->At(x), this->At(y));
+        const double height = RelativeHeight(this->Rest, { stays, x, y });
         if (height > bestHeight)
         {
           bestHeight = height;
@@ -375,12 +368,6 @@ private:
         std::replace(this->Changed.row(t).begin(), this->Changed.row(t).end(), goes, stays);
       }
     }
-  }
-
-  bool CanCarry(const std::array<int, 3>& corners) const
-  {
-    return RelativeHeight(this->At(corners[0]), this->At(corners[1]), this->At(corners[2])) >
-      SmallestCarrier;
   }
 
   void Rebuild()

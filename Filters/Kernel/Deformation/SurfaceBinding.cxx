@@ -2,6 +2,7 @@
 #include "Deformation/SurfaceBinding.h"
 
 #include "Base/Bytes.h"
+#include "Base/Constants.h"
 #include "Differential/RotationFit.h"
 #include "Mesh/Geometry.h"
 
@@ -14,6 +15,9 @@ namespace
 {
 /// A point nearer than this part of the diagonal is on the surface.
 constexpr double OnSurface = 1e-14;
+
+/// What two rotations differ by at most, in radians.
+constexpr double LargestTurn = Pi;
 
 /// Quaternions of rotations (#V x 4), each of the sign that it is given.
 Field Quaternions(const Matrices& rotations, const ExecutionContext& context)
@@ -202,6 +206,46 @@ SurfaceBinding::Carried SurfaceBinding::Evaluate(
       }
     });
   return carried;
+}
+
+Eigen::VectorXd SurfaceBinding::RoundingErrors(const Points& current, double rounding) const
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  const Points areaVectors = TriangleAreaVectors(current, mesh.GetTriangles());
+  Field longest = Field::Zero(current.rows(), 1);
+  Points areas = Points::Zero(current.rows(), 3);
+  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      const int v = mesh.GetTriangles()(t, i);
+      const int w = mesh.GetTriangles()(t, (i + 1) % 3);
+      const double length = (current.row(v) - current.row(w)).norm();
+      longest(v, 0) = std::max(longest(v, 0), length);
+      longest(w, 0) = std::max(longest(w, 0), length);
+      areas.row(v) += areaVectors.row(t);
+    }
+  }
+  Field angles = Field::Zero(current.rows(), 1);
+  for (Eigen::Index v = 0; v < current.rows(); ++v)
+  {
+    const double area = areas.row(v).norm();
+    const double blur = rounding * longest(v, 0);
+    angles(v, 0) = blur < LargestTurn * area ? blur / area : LargestTurn;
+  }
+  const Field ofSources = this->WithGroups(angles);
+  Eigen::VectorXd errors = Eigen::VectorXd::Zero(this->Queries.rows());
+  for (Eigen::Index i = 0; i < errors.size(); ++i)
+  {
+    Eigen::RowVector3d arm = this->Queries.row(i);
+    for (const Share& share : this->Shares[i])
+    {
+      errors[i] += share.Weight * ofSources(share.Source, 0);
+      arm -= share.Weight * this->RestSources.row(share.Source);
+    }
+    errors[i] *= arm.norm();
+  }
+  return errors;
 }
 
 int SurfaceBinding::VertexOf(Eigen::Index query) const

@@ -48,6 +48,10 @@ public:
   /// `current` (#V x 3) is the deformed surface.
   Carried Evaluate(const Points& current, const ExecutionContext& context = {}) const;
 
+  /// How far coordinates of `current` that are `rounding` off may put each point at most: #Q. The
+  /// turn of a one-ring with the longest edge l and the area A is known to about rounding l / A.
+  Eigen::VectorXd RoundingErrors(const Points& current, double rounding) const;
+
   /// The vertex that a point lies on, -1 elsewhere.
   int VertexOf(Eigen::Index query) const;
 

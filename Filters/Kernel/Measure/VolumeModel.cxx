@@ -56,6 +56,27 @@ void ConeOfRays(const TriangleMesh& mesh, const Points& points, int vertex,
   }
 }
 
+/// How far a ray is tilted to pass beside a place, and by which part its length changes then.
+constexpr double Tilt = 1e-5;
+constexpr double TiltedPart = 1e-3;
+
+/// Whether a ray that meets a triangle from outside leaves the body in the same place, because
+/// another body touches it there: seen from beyond that place, or beside it. The order of what
+/// is met in one place is a matter of rounding.
+template <typename Leaves>
+bool LeavesThere(const Eigen::Vector3d& start, const Eigen::Vector3d& direction, double distance,
+  double offset, const RayCaster& castRay, const Leaves& leaves)
+{
+  const RayHit back = castRay(start + (distance + offset) * direction, -direction);
+  if (back.Distance >= 0.0 && back.Distance < 2.0 * offset && leaves(back))
+  {
+    return true;
+  }
+  const Eigen::Vector3d tilted = direction + Tilt * direction.unitOrthogonal();
+  const RayHit beside = castRay(start, tilted.normalized());
+  return std::abs(beside.Distance - distance) < TiltedPart * distance && leaves(beside);
+}
+
 /// The mean length of the rays from a vertex that leave the body; negative if
 /// none does. A ray that meets a triangle from outside was never inside.
 double MeanDepth(const Eigen::Vector3d& point, const std::vector<Ray>& rays,
@@ -66,8 +87,12 @@ double MeanDepth(const Eigen::Vector3d& point, const std::vector<Ray>& rays,
   for (const Ray& ray : rays)
   {
     // The start is moved off the vertex's own triangles.
-    const RayHit hit = castRay(point + offset * ray.Direction, ray.Direction);
-    if (hit.Distance >= 0.0 && areaVectors.row(hit.Triangle).dot(ray.Direction) > 0.0)
+    const Eigen::Vector3d start = point + offset * ray.Direction;
+    const auto leaves = [&](const RayHit& hit)
+    { return areaVectors.row(hit.Triangle).dot(ray.Direction) > 0.0; };
+    const RayHit hit = castRay(start, ray.Direction);
+    if (hit.Distance >= 0.0 &&
+      (leaves(hit) || LeavesThere(start, ray.Direction, hit.Distance, offset, castRay, leaves)))
     {
       sum += ray.Weight * (hit.Distance + offset);
       weight += ray.Weight;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 namespace cartan
@@ -205,9 +206,11 @@ Points PyramidCoordinatesMorph::Improve(
     }
     context.Report(static_cast<double>(this->Iterations) / MaximumIterations);
   }
-  this->Warning = "The surface at the parameter " + std::to_string(t) + " is not the best: after " +
-    std::to_string(MaximumIterations) + " iterations points still move by " +
-    std::to_string(largest) + " of the mean edge.";
+  std::ostringstream text;
+  text << "The surface at the parameter " << t << " is not the best: after " << MaximumIterations
+       << " iterations points still move by " << largest
+       << " of the mean edge. Use the Isometric method, which does not iterate.";
+  this->Warning = text.str();
   return positions;
 }
 
