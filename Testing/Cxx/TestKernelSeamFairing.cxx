@@ -35,7 +35,7 @@ Merged SewCaps(int levelOfTarget, int levelOfSource)
 {
   const Shape target = Cap(levelOfTarget, 3, -1.0);
   const Shape source = Cap(levelOfSource, 5, 1.0);
-  Keys keys;
+  shapes::Keys keys;
   for (const double angle : { 0.0, 2.0, 4.0 })
   {
     const Eigen::Vector3d place(std::cos(angle), std::sin(angle), 0.1);

@@ -17,7 +17,7 @@ namespace
 constexpr double OnSurface = 1e-14;
 
 /// What two rotations differ by at most, in radians.
-constexpr double LargestTurn = Pi;
+constexpr double LargestBlurAngle = Pi;
 
 /// Quaternions of rotations (#V x 4), each of the sign that it is given.
 Field Quaternions(const Matrices& rotations, const ExecutionContext& context)
@@ -231,7 +231,7 @@ Eigen::VectorXd SurfaceBinding::RoundingErrors(const Points& current, double rou
   {
     const double area = areas.row(v).norm();
     const double blur = rounding * longest(v, 0);
-    angles(v, 0) = blur < LargestTurn * area ? blur / area : LargestTurn;
+    angles(v, 0) = blur < LargestBlurAngle * area ? blur / area : LargestBlurAngle;
   }
   const Field ofSources = this->WithGroups(angles);
   Eigen::VectorXd errors = Eigen::VectorXd::Zero(this->Queries.rows());
