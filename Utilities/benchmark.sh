@@ -44,4 +44,8 @@ OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkCompression
 for solver in cholmod cg; do
   OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkSolver 400000 "$solver"
 done
+if [ -x build/benchmarks/bin/CartanBenchmarkDistributed ]; then
+  mpiexec --allow-run-as-root -n 2 build/benchmarks/bin/CartanBenchmarkDistributed \
+    armadillo1 armadillo2 armadillo3 1664000
+fi
 build/benchmarks/bin/CartanBenchmarkDeformation "$@"

@@ -3,8 +3,8 @@
 """Refuses advice in the messages of the filters that no test follows.
 
 A text of the sources advises if a clause of it begins with one of the VERBS. A test that does
-what such a text says cites its words as Advice("...") in Testing/Cxx. Prints one line for each
-text without a test and exits with 1 if there is any.
+what such a text says cites its words as Advice("...") in Testing/Cxx or Testing/Distributed.
+Prints one line for each text without a test and exits with 1 if there is any.
 """
 import pathlib
 import re
@@ -24,6 +24,8 @@ EXEMPT = {
     "are supported: decimate or split": "more points or triangles than memory has",
     "Out of memory: decimate the surface": "a test cannot run out of memory",
     "on one rank (Aggregate Dataset": "two ranks, see Testing/Plugin/MpiDistributed.py",
+    "tell each other more than MPI can count": "2^31 numbers",
+    "does not suffice: use more ranks": "a test cannot run out of memory",
     "cut because the two triangles cannot agree": "a report of what was done",
 }
 
@@ -54,7 +56,8 @@ def sources():
 
 
 def main():
-    phrases = {joined(literals) for path in (ROOT / "Testing" / "Cxx").glob("*.cxx")
+    phrases = {joined(literals) for folder in ("Cxx", "Distributed")
+               for path in (ROOT / "Testing" / folder).glob("*.cxx")
                for literals in FOLLOWED.findall(path.read_text(encoding="utf-8"))}
     phrases.update(EXEMPT)
     count = untested = 0

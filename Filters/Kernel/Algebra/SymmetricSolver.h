@@ -96,6 +96,10 @@ public:
   /// everything takes.
   virtual std::int64_t GetNumberOfEntries() const = 0;
   virtual std::size_t GetBytes() const = 0;
+
+  /// The most steps that an iteration took for a column of the last solve; 0 where there is
+  /// a factor.
+  virtual int GetNumberOfSteps() const { return 0; }
 };
 
 /// Throws Error(BadInput) for CHOLMOD and conjugate gradients when not built with them.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace cartan
 {
@@ -51,14 +52,13 @@ Eigen::Vector3d NearestTurn(const Eigen::Vector3d& vector, const Eigen::Vector3d
 }
 
 /// Whether two handles' motions of a surface are the same to rounding, full turns
-/// included.
-bool AreSame(const HandleMotion& a, const HandleMotion& b, const Points& rest)
+/// included. `extent` is its largest coordinate.
+bool AreSame(const HandleMotion& a, const HandleMotion& b, const std::function<double()>& extent)
 {
   // Looks at the surface last, which takes longest.
   return (a.Linear - b.Linear).norm() <= SameMotion &&
     (a.RotationVector - b.RotationVector).norm() <= 1e-6 &&
-    (a.Translation - b.Translation).norm() <=
-    SameMotion * (rest.cwiseAbs().maxCoeff() + a.Translation.norm());
+    (a.Translation - b.Translation).norm() <= SameMotion * (extent() + a.Translation.norm());
 }
 
 bool IsRigid(const HandleMotion& motion)
@@ -152,16 +152,25 @@ CommonMotion::CommonMotion(const HandleProblem& problem)
   , Regions(problem)
   , HasPinned(HasPinnedHandle(problem))
 {
-  double count = 0.0;
+  const DistributedRows* pieces = problem.Pieces.get();
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(4); // of the points and their number
   for (int v = 0; v < problem.Mesh->NumberOfVertices(); ++v)
   {
-    if (this->Regions.GetMoving()[v] == 0)
+    if (this->Regions.GetMoving()[v] == 0 && (!pieces || pieces->IsOwned(v)))
     {
-      this->Centroid += problem.Rest->row(v).transpose();
-      count += 1.0;
+      sums.head<3>() += problem.Rest->row(v).transpose();
+      sums[3] += 1.0;
     }
   }
-  this->Centroid /= std::max(count, 1.0);
+  if (pieces)
+  {
+    pieces->Sum(sums);
+    Eigen::VectorXd extent(1);
+    extent[0] = problem.Rest->size() > 0 ? problem.Rest->cwiseAbs().maxCoeff() : 0.0;
+    pieces->Max(extent);
+    this->ExtentOfPieces = extent[0];
+  }
+  this->Centroid = sums.head<3>() / std::max(sums[3], 1.0);
 }
 
 /// The rotation and translation that fit the target positions of the lowest
@@ -347,6 +356,9 @@ HandleTargets CommonMotion::Remove(const HandleTargets& targets)
 /// Whether all handles that a region sees make one rigid motion: #regions.
 std::vector<char> CommonMotion::RigidRegions(const HandleTargets& relative) const
 {
+  const auto extent = [this] {
+    return this->Problem.Pieces ? this->ExtentOfPieces : this->Problem.Rest->cwiseAbs().maxCoeff();
+  };
   std::vector<char> isRigid;
   for (int region = 0; region < this->Regions.NumberOfRegions(); ++region)
   {
@@ -354,10 +366,7 @@ std::vector<char> CommonMotion::RigidRegions(const HandleTargets& relative) cons
     isRigid.push_back(!handles.empty() && IsRigid(MotionOf(relative, handles.back())) &&
       std::all_of(handles.begin(), handles.end(),
         [&](int k)
-        {
-          return AreSame(
-            MotionOf(relative, k), MotionOf(relative, handles.back()), *this->Problem.Rest);
-        }));
+        { return AreSame(MotionOf(relative, k), MotionOf(relative, handles.back()), extent); }));
   }
   return isRigid;
 }

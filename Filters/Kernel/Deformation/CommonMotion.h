@@ -65,6 +65,7 @@ private:
   HandleRegions Regions;
   bool HasPinned;
   Eigen::Vector3d Centroid = Eigen::Vector3d::Zero(); ///< of the lowest moving handle
+  double ExtentOfPieces = 0.0; ///< where there are some: the largest coordinate on any rank
   RigidMotion Motion;
   bool IsIdentity = true;
 };

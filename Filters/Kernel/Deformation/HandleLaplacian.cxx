@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <set>
 
@@ -19,41 +20,25 @@ double HoldWeight(const HandleProblem& problem, int vertex)
 
 /// Marks the unknown vertices that a moving handle reaches through unknown ones.
 std::vector<char> ReachedUnknowns(
-  const TriangleMesh& mesh, const std::vector<char>& isHeld, const std::vector<int>& moving)
+  const HandleProblem& problem, const std::vector<char>& isHeld, const std::vector<int>& moving)
 {
-  const int numberOfVertices = mesh.NumberOfVertices();
-  std::vector<char> isReached(numberOfVertices, 0);
-  std::vector<int> stack;
-  const auto reach = [&](int v)
+  const TriangleMesh& mesh = *problem.Mesh;
+  std::vector<char> seeds(isHeld.size(), 0);
+  std::vector<char> mayEnter(isHeld.size(), 0);
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    if (!isHeld[v] && !isReached[v])
-    {
-      isReached[v] = 1;
-      stack.push_back(v);
-    }
-  };
-  for (int v = 0; v < numberOfVertices; ++v)
-  {
+    mayEnter[v] = !isHeld[v];
     if (moving[v] < 0 || !mesh.IsUsed(v))
     {
       continue;
     }
-    reach(v);
+    seeds[v] = 1;
     for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
-      reach(mesh.Neighbor(d));
+      seeds[mesh.Neighbor(d)] = 1;
     }
   }
-  while (!stack.empty())
-  {
-    const int v = stack.back();
-    stack.pop_back();
-    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-    {
-      reach(mesh.Neighbor(d));
-    }
-  }
-  return isReached;
+  return FloodPieces(mesh, problem.Pieces.get(), seeds, mayEnter);
 }
 
 std::vector<char> HeldVertices(
@@ -87,7 +72,7 @@ std::vector<int> MovingHandleOfVertices(const HandleProblem& problem)
 std::vector<char> UnknownVertices(const HandleProblem& problem, Hold hold)
 {
   const std::vector<int> moving = MovingHandleOfVertices(problem);
-  return ReachedUnknowns(*problem.Mesh, HeldVertices(problem, hold, moving), moving);
+  return ReachedUnknowns(problem, HeldVertices(problem, hold, moving), moving);
 }
 
 Eigen::VectorXd SquaredSoftWeights(
@@ -119,7 +104,22 @@ FactorLimits LaplacianLimits()
 
 void RequireTranslations(const AnchoredSystem& system, const Anchors& anchors)
 {
-  if (anchors.Stiffness.isZero(0.0))
+  RequireTranslations([&system](Field& values) { system.Interpolate(values); }, anchors, nullptr);
+}
+
+void RequireTranslations(const std::function<void(Field&)>& interpolate, const Anchors& anchors,
+  const DistributedRows* pieces)
+{
+  Eigen::VectorXd stiffest = Eigen::VectorXd::Zero(1);
+  if (anchors.Stiffness.size() > 0)
+  {
+    stiffest[0] = anchors.Stiffness.maxCoeff();
+  }
+  if (pieces)
+  {
+    pieces->Max(stiffest);
+  }
+  if (stiffest[0] == 0.0)
   {
     return;
   }
@@ -128,15 +128,16 @@ void RequireTranslations(const AnchoredSystem& system, const Anchors& anchors)
   {
     translation(static_cast<Eigen::Index>(i), 0) = anchors.Vertices[i] < 0 ? 0.0 : 1.0;
   }
-  system.Interpolate(translation);
+  interpolate(translation);
   IdSample lost;
   for (std::size_t i = 0; i < anchors.Vertices.size(); ++i)
   {
+    const int v = anchors.Vertices[i];
     // Of the way of the handles: less is not seen.
     const double error = std::abs(translation(static_cast<Eigen::Index>(i), 0) - 1.0);
-    if (anchors.Vertices[i] >= 0 && !(error < 1e-4))
+    if (v >= 0 && !(error < 1e-4) && (!pieces || pieces->IsOwned(v)))
     {
-      lost.Add(anchors.Vertices[i]);
+      lost.Add(pieces ? pieces->GetName(v) : v);
     }
   }
   if (!lost.IsEmpty())
@@ -149,7 +150,13 @@ void RequireTranslations(const AnchoredSystem& system, const Anchors& anchors)
 
 bool StoresHandleFields(const HandleProblem& problem)
 {
-  const std::set<int> handles(problem.Handle.begin(), problem.Handle.end());
+  std::set<std::int64_t> handles(problem.Handle.begin(), problem.Handle.end());
+  if (problem.Pieces)
+  {
+    const std::vector<std::int64_t> all =
+      problem.Pieces->Gather(std::vector<std::int64_t>(handles.begin(), handles.end()));
+    handles.insert(all.begin(), all.end());
+  }
   return static_cast<int>(handles.size() - handles.count(0)) <= problem.StoredHandles;
 }
 
@@ -240,9 +247,91 @@ HandleLaplacian::HandleLaplacian(const HandleProblem& problem,
   context.Report(0.1);
 
   const Anchors anchors = this->GetAnchors();
+  if (problem.Pieces)
+  {
+    this->FactorizeOnPieces(problem, *edgeWeights, anchors);
+    return;
+  }
   this->System.Factorize(
     Laplacian(mesh, *edgeWeights, this->Vertices), anchors, context.Part(0.1, 1.0));
   RequireTranslations(this->System, anchors);
+}
+
+/// The system of the unknowns alone; Interpolate() adds what held neighbors give.
+void HandleLaplacian::FactorizeOnPieces(
+  const HandleProblem& problem, const Eigen::VectorXd& edgeWeights, const Anchors& anchors)
+{
+  const DistributedRows& pieces = *problem.Pieces;
+  const std::vector<int> unknowns(
+    this->Vertices.begin(), this->Vertices.begin() + this->UnknownCount);
+  this->RequireHeld(problem, edgeWeights, unknowns);
+  SparseMatrix lower =
+    Laplacian(*problem.Mesh, edgeWeights, unknowns).triangularView<Eigen::Lower>();
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    if (this->SquaredSoftWeights[i] > 0.0)
+    {
+      lower.coeffRef(i, i) += 0.5 * this->SquaredSoftWeights[i];
+    }
+  }
+  this->Pieces = problem.Pieces;
+  this->OnPieces = std::make_unique<PieceSystem>(problem.Pieces, unknowns, lower);
+  RequireTranslations([this](Field& values) { this->Interpolate(values, {}); }, anchors, &pieces);
+}
+
+/// Throws Error(SingularSystem) for unknowns that reach nothing held over edges of some weight.
+void HandleLaplacian::RequireHeld(const HandleProblem& problem, const Eigen::VectorXd& edgeWeights,
+  const std::vector<int>& unknowns) const
+{
+  std::vector<char> isUnknown(problem.Handle.size(), 0);
+  std::vector<char> isHeld(problem.Handle.size(), 0);
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    isUnknown[unknowns[i]] = 1;
+    isHeld[unknowns[i]] = this->SquaredSoftWeights[i] > 0.0;
+    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
+    {
+      isHeld[unknowns[i]] |= edge->Neighbor >= this->UnknownCount && edge->Weight != 0.0;
+    }
+  }
+  const std::vector<char> isReached = FloodPieces(*problem.Mesh, problem.Pieces.get(), isHeld,
+    isUnknown, [&edgeWeights](int edge) { return edgeWeights[edge] != 0.0; });
+  IdSample loose;
+  for (const int v : unknowns)
+  {
+    if (!isReached[v] && problem.Pieces->IsOwned(v))
+    {
+      loose.Add(problem.Pieces->GetName(v));
+    }
+  }
+  if (!loose.IsEmpty())
+  {
+    throw Error(ErrorCode::SingularSystem,
+      "The system is singular: " + loose.Describe("point", "points") +
+        " in connected parts have no constraint. In each part, fix at least one point.");
+  }
+}
+
+void HandleLaplacian::Interpolate(Field& values, const ExecutionContext& context) const
+{
+  if (!this->OnPieces)
+  {
+    this->System.Interpolate(values, context);
+    return;
+  }
+  Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Zero(this->UnknownCount, values.cols());
+  for (int i = 0; i < this->UnknownCount; ++i)
+  {
+    rightHandSide.row(i) = 0.5 * this->SquaredSoftWeights[i] * values.row(i);
+    for (const Edge* edge = this->EdgesBegin(i); edge != this->EdgesEnd(i); ++edge)
+    {
+      if (edge->Neighbor >= this->UnknownCount)
+      {
+        rightHandSide.row(i) += edge->Weight * values.row(edge->Neighbor);
+      }
+    }
+  }
+  values.topRows(this->UnknownCount) = this->OnPieces->Solve(rightHandSide, context);
 }
 
 Anchors HandleLaplacian::GetAnchors() const
@@ -291,7 +380,7 @@ Field HandleLaplacian::HarmonicFields(const ExecutionContext& context) const
       fields(i, this->MovingHandles[i]) = 1.0;
     }
   }
-  this->System.Interpolate(fields, context);
+  this->Interpolate(fields, context);
   return fields;
 }
 
@@ -308,7 +397,7 @@ Field HandleLaplacian::Spread(int components,
       target(i, fields.row(i).data());
     }
   }
-  this->System.Interpolate(fields, context);
+  this->Interpolate(fields, context);
   return fields;
 }
 }

@@ -3,6 +3,7 @@
 
 #include "Algebra/AnchoredSystem.h"
 #include "Deformation/HandleProblem.h"
+#include "Deformation/PieceSystem.h"
 
 #include <functional>
 #include <vector>
@@ -33,6 +34,11 @@ Eigen::VectorXd SquaredSoftWeights(
 /// Anchors::Vertices) are 0 in it.
 void RequireTranslations(const AnchoredSystem& system, const Anchors& anchors);
 
+/// The same for any system, of which `interpolate` finds the values between the anchors';
+/// `pieces` may be nothing.
+void RequireTranslations(const std::function<void(Field&)>& interpolate, const Anchors& anchors,
+  const DistributedRows* pieces);
+
 /// Index of each vertex's handle in HandleProblem::Moving, -1 for pinned and
 /// free vertices: #V.
 std::vector<int> MovingHandleOfVertices(const HandleProblem& problem);
@@ -62,6 +68,10 @@ Points HandlePositions(
 /// Its *local* numbering has the unknown vertices first, then the held vertices
 /// next to them. Free vertices that no moving handle reaches through free
 /// vertices are not in it and cost nothing.
+///
+/// Where the mesh is a piece, the unknowns are those of the piece, ghosts too, all functions
+/// that solve are collective, and what they return is right at ghosts. Right-hand sides
+/// need be right at owned vertices only.
 class HandleLaplacian
 {
 public:
@@ -130,20 +140,50 @@ public:
   Eigen::Map<const Eigen::MatrixXd> Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
     const ExecutionContext& context = {}) const
   {
-    return this->System.SolveFree(rightHandSide, context);
+    return this->OnPieces ? this->OnPieces->Solve(rightHandSide, context)
+                          : this->System.SolveFree(rightHandSide, context);
   }
 
-  int GetNumberOfFactorizations() const { return this->System.GetNumberOfFactorizations(); }
-  SolverBackend GetBackend() const { return this->System.GetBackend(); }
+  /// The surface of which the mesh is a piece; nothing where it is the whole.
+  const DistributedRows* GetPieces() const { return this->Pieces.get(); }
+
+  /// The largest value that a rank has, entry by entry; collective where there are pieces.
+  void MaximumOverPieces(Eigen::Ref<Eigen::VectorXd> values) const
+  {
+    if (this->Pieces)
+    {
+      this->Pieces->Max(values);
+    }
+  }
+
+  int NumberOfMovingHandles() const { return this->MovingCount; }
+
+  int GetNumberOfFactorizations() const
+  {
+    return this->OnPieces ? 1 : this->System.GetNumberOfFactorizations();
+  }
+  SolverBackend GetBackend() const
+  {
+    return this->OnPieces ? SolverBackend::ConjugateGradients : this->System.GetBackend();
+  }
+
+  /// See SymmetricSolver; on pieces alone.
+  int GetNumberOfSteps() const { return this->OnPieces ? this->OnPieces->GetNumberOfSteps() : 0; }
 
   std::size_t GetBytes() const
   {
-    return this->System.GetBytes() +
+    return this->System.GetBytes() + (this->OnPieces ? this->OnPieces->GetBytes() : 0) +
       TotalBytes(this->Vertices, this->MovingHandles, this->SquaredSoftWeights, this->EdgeOffsets,
         this->Edges);
   }
 
 private:
+  void FactorizeOnPieces(
+    const HandleProblem& problem, const Eigen::VectorXd& edgeWeights, const Anchors& anchors);
+  void RequireHeld(const HandleProblem& problem, const Eigen::VectorXd& edgeWeights,
+    const std::vector<int>& unknowns) const;
+  void Interpolate(Field& values, const ExecutionContext& context) const;
+
   std::vector<int> Vertices;
   std::vector<int> MovingHandles;
   std::vector<double> SquaredSoftWeights;
@@ -152,5 +192,8 @@ private:
   std::vector<int> EdgeOffsets;
   std::vector<Edge> Edges;
   AnchoredSystem System;
+  /// In its place where the mesh is a piece.
+  std::unique_ptr<PieceSystem> OnPieces;
+  std::shared_ptr<const DistributedRows> Pieces;
 };
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Algebra/DistributedRows.h"
 #include "Base/Bytes.h"
 #include "Deformation/Riders.h"
 #include "Differential/Laplacian.h"
@@ -49,6 +50,11 @@ struct HandleProblem
   /// fields of 64 double the memory of similarity editing and take the time of 60
   /// solves, and a sum over 256 takes as long as a solve.
   int StoredHandles = 64;
+  /// Nothing, or how the ranks reach each other when Mesh is one piece of several of a
+  /// surface; its rows are the vertices. Then all ranks make a deformer together and give
+  /// it the same motions, and it works on all pieces at once (see SurfaceDeformer). Moving
+  /// is the same on all ranks, slivers and joined vertices are not removed.
+  std::shared_ptr<const DistributedRows> Pieces;
 
   const std::shared_ptr<const TriangleMesh>& GetWhole() const
   {

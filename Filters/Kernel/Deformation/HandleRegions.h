@@ -41,6 +41,8 @@ public:
   std::size_t GetBytes() const { return TotalBytes(this->Regions, this->Moving, this->Handles); }
 
 private:
+  void FindOnPieces(const HandleProblem& problem, const std::vector<char>& isUnknown);
+
   std::vector<int> Regions; ///< #V
   std::vector<int> Moving;  ///< #V
   std::vector<std::vector<int>> Handles;

@@ -149,7 +149,15 @@ void ShapePreservingDeformer::ComputeTransforms(
   for (const HandleVertex& held : this->HandleVertices)
   {
     MatrixAt(this->Transforms, held.Vertex) = HandleTransform(targets, held.Vertex, held.Handle);
-    rotationVectors.push_back(this->RotationVector(targets, held));
+    if (targets.RotationVectors.rows())
+    {
+      rotationVectors.push_back(this->RotationVector(targets, held));
+    }
+  }
+  // A piece may have vertices of some handles only.
+  for (std::size_t k = 0; k < targets.Motions.size() && !targets.RotationVectors.rows(); ++k)
+  {
+    rotationVectors.push_back(targets.Motions[k].RotationVector);
   }
   Eigen::Vector3d axis;
   this->SharedAxis = FindSharedAxis(rotationVectors, axis);
@@ -200,6 +208,12 @@ void ShapePreservingDeformer::BlendRotations(
     },
     context);
   this->Iterations = 1;
+  if (this->MaximumIterations > 1 && this->Problem.Pieces)
+  {
+    throw Error(ErrorCode::BadInput,
+      "Rotations about different axes are refined on one process only: set MaximumIterations to "
+      "1, or gather the surface.");
+  }
   if (this->MaximumIterations > 1 && eta.rows() > 0)
   {
     eta = this->Iterate(std::move(eta), targets, context);

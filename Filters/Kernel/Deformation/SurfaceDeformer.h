@@ -13,6 +13,13 @@ namespace cartan
 {
 /// A deformation method with everything that survives from one motion to the
 /// next.
+///
+/// On one of several pieces (HandleProblem::Pieces) all ranks make the deformer, and move it,
+/// together, and get the same surface as one process would. Only motions that are sums of
+/// fields send no message: with rotation-invariant editing those without projection after
+/// the first, and what is read from a table. RotationInvariantDeformer, PoissonDeformer with
+/// harmonic propagation and ShapePreservingDeformer serve pieces, without volume corrections
+/// and with motions of handles rather than targets of points.
 class SurfaceDeformer
 {
 public:

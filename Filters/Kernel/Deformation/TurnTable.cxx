@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cartan
 {
@@ -38,13 +39,10 @@ TurnTable::TurnTable(std::shared_ptr<const HandleLaplacian> system,
   : System(std::move(system))
   , Rest(std::move(rest))
   , Range(options.Range)
+  , NumberOfHandles(this->System->NumberOfMovingHandles())
 {
-  for (int i = 0; i < this->System->NumberOfLocals(); ++i)
-  {
-    this->NumberOfHandles = std::max(this->NumberOfHandles, this->System->MovingHandle(i) + 1);
-  }
   // Angles move points by their distance from the axis.
-  const double size = (this->Rest->colwise().maxCoeff() - this->Rest->colwise().minCoeff()).norm();
+  const double size = this->RestDiagonal();
   // What the fields S and C make of an error of the frames is known afterwards only.
   for (const double share : { 1.0, 0.02 })
   {
@@ -59,6 +57,19 @@ TurnTable::TurnTable(std::shared_ptr<const HandleLaplacian> system,
   }
   this->Range = 0.0;
   this->Fields.resize(0, 0);
+}
+
+double TurnTable::RestDiagonal() const
+{
+  Eigen::VectorXd extremes = // of x and -x
+    Eigen::VectorXd::Constant(6, -std::numeric_limits<double>::infinity());
+  if (this->Rest->rows() > 0)
+  {
+    extremes << this->Rest->colwise().maxCoeff().transpose(),
+      -this->Rest->colwise().minCoeff().transpose();
+  }
+  this->System->MaximumOverPieces(extremes);
+  return (extremes.head<3>() + extremes.tail<3>()).norm();
 }
 
 /// The largest coefficient of each polynomial, on a sample of the vertices.
@@ -83,6 +94,7 @@ Eigen::VectorXd TurnTable::ModeSizes(
     }
     sizes = sizes.cwiseMax(coefficients.cwiseAbs());
   }
+  this->System->MaximumOverPieces(sizes);
   return sizes;
 }
 
@@ -256,7 +268,7 @@ double TurnTable::ErrorAt(double angle, const Points* offsets, const TurnsOfAngl
   this->RightHandSide(offsets, values.col(1).data(), 3, rightHandSide, context);
   const Eigen::Map<const Eigen::MatrixXd> solution = this->System->Solve(rightHandSide);
   const Eigen::VectorXf polynomials = this->Polynomials(angle);
-  double largest = 0.0;
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(1);
   for (Eigen::Index i = 0; i < solution.rows(); ++i)
   {
     Eigen::RowVector3f sums[2] = { Eigen::RowVector3f::Zero(), Eigen::RowVector3f::Zero() };
@@ -265,11 +277,12 @@ double TurnTable::ErrorAt(double angle, const Points* offsets, const TurnsOfAngl
       sums[m < this->NumberOfSines ? 0 : 1] +=
         polynomials[m] * this->Fields.row(i).segment<3>(3 * m);
     }
-    largest = std::max(largest,
+    largest[0] = std::max(largest[0],
       (sums[0].cast<double>() - solution.row(i).head<3>()).norm() +
         (sums[1].cast<double>() - solution.row(i).tail<3>()).norm());
   }
-  return largest;
+  this->System->MaximumOverPieces(largest);
+  return largest[0];
 }
 
 void TurnTable::Evaluate(double angle, const Eigen::Vector3d& axis,

@@ -75,6 +75,7 @@ private:
   /// Single precision: half the memory traffic, and its rounding is far below any tolerance.
   using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+  double RestDiagonal() const;
   Eigen::VectorXd ModeSizes(
     const TurnsOfAngle& turns, const std::vector<Mode>& modes, double range) const;
   void ChooseModes(const TurnsOfAngle& turns, double tolerance);
@@ -90,7 +91,7 @@ private:
   std::shared_ptr<const Points> Rest;
   double Range = 0.0;
   double Error = 0.0;
-  int NumberOfHandles = 0;
+  int NumberOfHandles;
   std::vector<Mode> Modes; ///< those of S, then those of C
   int NumberOfSines = 0;
   /// A row per unknown: the vectors of the modes, then the harmonic fields.
