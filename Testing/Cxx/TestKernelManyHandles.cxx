@@ -98,8 +98,8 @@ TEST(ManyHandles, StoredFieldsAndSolvesAgree)
 // What is kept does not grow with the number of handles beyond that.
 TEST(ManyHandles, MemoryDoesNotGrowWithTheirNumber)
 {
-  for (const std::string name :
-    { "RotationInvariant", "ShapePreserving", "PoissonHarmonic", "SimilarityEdgeForm" })
+  for (const std::string name : { "RotationInvariant", "ShapePreserving", "PoissonHarmonic",
+         "SimilarityEdgeForm", "Multiresolution2" })
   {
     std::size_t bytes[2];
     for (const int count : { 6, 12 })

@@ -121,6 +121,7 @@ MultiresolutionDeformer::MultiresolutionDeformer(
   , Warning(System.GetWarning())
   , MovingHandles(MovingHandleOfVertices(this->Problem))
   , Zero(Points::Zero(this->System.NumberOfLocals(), 3))
+  , StoresFields(StoresHandleFields(this->Problem))
   , RestBase(Points::Zero(this->Problem.Rest->rows(), 3))
 {
   // K (x + w) = 0 with handles at rest.
@@ -183,6 +184,72 @@ void MultiresolutionDeformer::PrepareSpreading(const ExecutionContext& context)
   this->Spreading.Factorize(graph, anchors, context);
 }
 
+/// Handle k relative to the middle of what the system sees of it and all others at the
+/// origin, then handle k all in one place.
+void MultiresolutionDeformer::ComputeBaseFields()
+{
+  const Points& rest = *this->Problem.Rest;
+  const auto count = static_cast<Eigen::Index>(this->Problem.Moving.size());
+  this->HandleCenters.setZero(count, 3);
+  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(count);
+  for (const int v : this->System.GetVertices())
+  {
+    if (const int k = this->MovingHandles[v]; k >= 0)
+    {
+      this->HandleCenters.row(k) += rest.row(v);
+      sizes[k] += 1.0;
+    }
+  }
+  this->HandleCenters.array().colwise() /= sizes.cwiseMax(1.0).array();
+  Field fields = Field::Zero(this->System.NumberOfLocals(), 4 * count);
+  for (int i = 0; i < this->System.NumberOfLocals(); ++i)
+  {
+    const int v = this->System.GetVertices()[i];
+    if (const int k = this->MovingHandles[v]; k >= 0)
+    {
+      Eigen::RowVector4d target;
+      target << rest.row(v) - this->HandleCenters.row(k), 1.0;
+      fields.block<1, 4>(i, 4 * k) = target;
+    }
+  }
+  this->System.Interpolate(fields);
+  this->BaseFields = fields.topRows(this->System.NumberOfUnknowns());
+}
+
+/// `displacements` (#V x 3) has those of handles, and gets those of the unknowns.
+void MultiresolutionDeformer::MoveBase(
+  const HandleTargets& targets, Points& displacements, const ExecutionContext& context)
+{
+  if (targets.IsPerVertex() || !this->StoresFields)
+  {
+    this->System.Solve(this->Zero, displacements);
+    return;
+  }
+  if (this->BaseFields.rows() == 0)
+  {
+    this->ComputeBaseFields();
+  }
+  // A_k - I and t_k, one below the other, as the fields are side by side.
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> motions(this->BaseFields.cols(), 3);
+  for (Eigen::Index k = 0; k < this->HandleCenters.rows(); ++k)
+  {
+    const HandleMotion& motion = targets.Motions[static_cast<std::size_t>(k)];
+    const Eigen::Matrix3d change = motion.Linear - Eigen::Matrix3d::Identity();
+    motions.middleRows<3>(4 * k) = change.transpose();
+    motions.row(4 * k + 3) =
+      (change * this->HandleCenters.row(k).transpose() + motion.Translation).transpose();
+  }
+  const std::vector<int>& vertices = this->System.GetVertices();
+  context.For(this->System.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        displacements.row(vertices[i]) = this->BaseFields.row(i).lazyProduct(motions);
+      }
+    });
+}
+
 /// The base's local frame turns as its one-ring and normal do.
 void MultiresolutionDeformer::FitFrames(
   const Points& displacements, const ExecutionContext& context)
@@ -222,7 +289,7 @@ void MultiresolutionDeformer::DeformRelative(const HandleTargets& targets, bool 
   result.Positions = HandlePositions(this->Problem, targets, this->MovingHandles);
   result.FrameScale.setOnes(rest.rows());
   Points displacements = result.Positions - rest;
-  this->System.Solve(this->Zero, displacements);
+  this->MoveBase(targets, displacements, context);
   context.Report(0.5);
   if (wantTransforms)
   {
@@ -231,13 +298,17 @@ void MultiresolutionDeformer::DeformRelative(const HandleTargets& targets, bool 
   }
   this->FitFrames(displacements, context);
   const std::vector<int>& vertices = this->System.GetVertices();
-  for (int i = 0; i < this->System.NumberOfUnknowns(); ++i)
-  {
-    const int v = vertices[i];
-    const Eigen::Vector3d detail = (rest.row(v) - this->RestBase.row(v)).transpose();
-    result.Positions.row(v) =
-      rest.row(v) + displacements.row(v) + (MatrixAt(this->Changes, i) * detail).transpose();
-  }
+  context.For(this->System.NumberOfUnknowns(),
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        const int v = vertices[i];
+        const Eigen::Vector3d detail = (rest.row(v) - this->RestBase.row(v)).transpose();
+        result.Positions.row(v) =
+          rest.row(v) + displacements.row(v) + (MatrixAt(this->Changes, i) * detail).transpose();
+      }
+    });
   context.Report(1.0);
 }
 }

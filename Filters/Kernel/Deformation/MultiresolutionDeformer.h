@@ -10,7 +10,14 @@ namespace cartan
 /// Mesh Processing, 2006, section 4.2): a smooth base that solves L^k x = 0
 /// between the handles, and the detail as offsets in the base's local frames.
 /// The base follows the handles; its frames take the detail along. The base is
-/// solved for by its displacements from the rest.
+/// solved for by its displacements from the rest. They are linear in the handles'
+/// motions x -> A_k (x - c_k) + c_k + t_k about the middle c_k of each handle,
+///
+///   d = sum_k [(A_k - I) phi_k + h_k t_k],
+///
+/// with four numbers per vertex and moving handle, so that a drag solves nothing for the
+/// base. (Targets that differ from vertex to vertex are solved for, and motions of many
+/// handles, see HandleProblem::StoredHandles.)
 ///
 /// A base need not be like the surface: that of a limb without handles is nearly a
 /// point. Where the details are long against the base's one-rings, frames of these
@@ -43,7 +50,8 @@ public:
   std::size_t GetBytes() const override
   {
     return this->GetBaseBytes() + this->System.GetBytes() + this->Spreading.GetBytes() +
-      TotalBytes(this->MovingHandles, this->Zero, this->RestBase, this->RestNormals, this->Changes);
+      TotalBytes(this->MovingHandles, this->Zero, this->RestBase, this->RestNormals, this->Changes,
+        this->HandleCenters, this->BaseFields);
   }
 
 protected:
@@ -52,6 +60,9 @@ protected:
 
 private:
   void PrepareSpreading(const ExecutionContext& context);
+  void ComputeBaseFields();
+  void MoveBase(
+    const HandleTargets& targets, Points& displacements, const ExecutionContext& context);
   void FitFrames(const Points& displacements, const ExecutionContext& context);
 
   PolyharmonicSystem System;
@@ -60,8 +71,12 @@ private:
   std::string Warning;
   std::vector<int> MovingHandles; ///< #V, index in HandleProblem::Moving or -1
   Points Zero;                    ///< #locals x 3, the right-hand side
-  Points RestBase;                ///< #V x 3
-  Points RestNormals;             ///< of the base's vertices that have a frame: #frames x 3
+  bool StoresFields;              ///< whether motions are sums of these:
+  Points HandleCenters;           ///< #Moving x 3, c_k
+  /// #unknowns x 4 #Moving, phi_k and h_k; empty until first needed.
+  Field BaseFields;
+  Points RestBase;    ///< #V x 3
+  Points RestNormals; ///< of the base's vertices that have a frame: #frames x 3
   /// The frames' rotations minus the identity, of the unknowns and the locals next
   /// to them: #x 9.
   Matrices Changes;

@@ -3,6 +3,7 @@
 
 #include "Differential/LaplaceOperator.h"
 
+#include <algorithm>
 #include <iomanip>
 #include <sstream>
 
@@ -133,6 +134,26 @@ void PolyharmonicSystem::Solve(const Points& rightHandSide, Points& values) cons
   for (int i = 0; i < this->NumberOfUnknowns(); ++i)
   {
     values.row(this->Vertices[i]) = locals.row(i);
+  }
+}
+
+void PolyharmonicSystem::Interpolate(Field& locals) const
+{
+  const Field targets = locals;
+  this->System.Interpolate(locals);
+  const Points zero = Points::Zero(this->Refinements ? locals.rows() : 0, 3);
+  for (Eigen::Index column = 0; this->Refinements && column < locals.cols(); column += 3)
+  {
+    const Eigen::Index count = std::min<Eigen::Index>(3, locals.cols() - column);
+    Points target = Points::Zero(locals.rows(), 3);
+    Points value = target;
+    target.leftCols(count) = targets.middleCols(column, count);
+    value.leftCols(count) = locals.middleCols(column, count);
+    for (int i = 0; i < this->Refinements; ++i)
+    {
+      this->Refine(zero, target, value);
+    }
+    locals.middleCols(column, count) = value.leftCols(count);
   }
 }
 

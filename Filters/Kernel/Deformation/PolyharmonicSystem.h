@@ -63,6 +63,10 @@ public:
   /// rest are better unknowns than positions.
   void Solve(const Points& rightHandSide, Points& values) const;
 
+  /// Solves K x = 0 for many functions at once: `locals` (#locals x n) has the values of
+  /// held vertices and the targets of softly held ones, and gets the unknowns'.
+  void Interpolate(Field& locals) const;
+
   /// L (M^-1 L)^(k-1) x of the locals, right at the unknowns.
   Points Apply(const Points& locals) const;
 
