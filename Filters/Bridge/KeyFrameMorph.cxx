@@ -7,6 +7,7 @@
 #include "Bridge/MatchedSurfaces.h"
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfaceWriter.h"
+#include "Kernel/Base/Bytes.h"
 #include "Kernel/Morph/KeyInterpolation.h"
 #include "Kernel/Morph/MorphVolume.h"
 #include "Kernel/Morph/RigidPlacement.h"
@@ -28,8 +29,9 @@ namespace
 /// What is kept while the key frames and the method are the same.
 struct PreparedMorph
 {
-  Surface First;  ///< with the triangles that all key frames use
-  KeyFrames Keys; ///< about the origin of First
+  Surface First;           ///< with the triangles that all key frames use
+  KeyFrames Keys;          ///< about the origin of First
+  std::vector<int> Unused; ///< the vertices in no triangle
   std::unique_ptr<SurfaceMorph> Morph;
   std::unique_ptr<MorphVolume> Volume; ///< once it is needed
 
@@ -45,7 +47,7 @@ struct PreparedMorph
   {
     const std::size_t positions =
       this->Keys.Positions.size() * this->Keys.Positions.front().size() * sizeof(double);
-    return positions + this->First.GetBytes() + this->Morph->GetBytes() +
+    return positions + TotalBytes(this->Unused) + this->First.GetBytes() + this->Morph->GetBytes() +
       (this->Volume ? this->Volume->GetBytes() : 0);
   }
 };
@@ -74,6 +76,13 @@ std::unique_ptr<PreparedMorph> Prepare(const MatchedSurfaces& matched,
   auto prepared = std::make_unique<PreparedMorph>();
   prepared->First = matched.First();
   prepared->Keys.Mesh = matched.Mesh;
+  for (int v = 0; v < matched.Mesh->NumberOfVertices(); ++v)
+  {
+    if (!matched.Mesh->IsUsed(v))
+    {
+      prepared->Unused.push_back(v);
+    }
+  }
   prepared->Keys.Parameters = parameters;
   for (std::size_t k = 0; k < matched.Positions.size(); ++k)
   {
@@ -132,17 +141,15 @@ void WriteBetween(const std::vector<vtkPolyData*>& keys, const KeyPlace& place,
   const std::size_t model = isLikeFirst ? nearest : 0;
   const Surface surface = prepared.SurfaceAt(model);
   run.Warn(WriteSurface(surface, positions, keys[model], run.Output(), run.Context()));
-  for (int v = 0; v < surface.Mesh->NumberOfVertices(); ++v)
+  for (const int v : prepared.Unused)
   {
-    if (!surface.Mesh->IsUsed(v))
-    {
-      const Eigen::Vector3d from(keys[place.Before]->GetPoint(v));
-      const Eigen::Vector3d to(keys[place.Before + 1]->GetPoint(v));
-      const Eigen::Vector3d point = from + place.Part * (to - from);
-      run.Output()->GetPoints()->SetPoint(v, point.data());
-    }
+    const Eigen::Vector3d from(keys[place.Before]->GetPoint(v));
+    const Eigen::Vector3d to(keys[place.Before + 1]->GetPoint(v));
+    const Eigen::Vector3d point = from + place.Part * (to - from);
+    run.Output()->GetPoints()->SetPoint(v, point.data());
   }
 }
+
 MorphPlace ReadLocalPlace(vtkPolyData* first, const std::string& name)
 {
   vtkDataArray* array = RequirePointArray(first, name, 1);

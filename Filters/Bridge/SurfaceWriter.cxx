@@ -42,12 +42,16 @@ bool WriteCoordinates(const Surface& surface, const Points& positions, vtkDataAr
       bool isFiniteHere = true;
       for (int v = begin; v < end; ++v)
       {
-        Real* point = to + 3 * static_cast<std::size_t>(v);
-        if (mesh.IsUsed(v) && positions.row(v) != rest.row(v))
+        const std::size_t first = 3 * static_cast<std::size_t>(v);
+        const double* position = positions.data() + first;
+        const double* before = rest.data() + first;
+        Real* point = to + first;
+        if (mesh.IsUsed(v) &&
+          (position[0] != before[0] || position[1] != before[1] || position[2] != before[2]))
         {
           for (int c = 0; c < 3; ++c)
           {
-            point[c] = static_cast<Real>(positions(v, c) + surface.Origin[c]);
+            point[c] = static_cast<Real>(position[c] + surface.Origin[c]);
           }
           // x - x is 0 unless x is infinite or NaN: branches would cost as much as writing.
           isFiniteHere &=
@@ -55,7 +59,10 @@ bool WriteCoordinates(const Surface& surface, const Points& positions, vtkDataAr
         }
         else if (from)
         {
-          std::copy_n(from + 3 * static_cast<std::size_t>(v), 3, point);
+          // std::copy_n of three would be a call.
+          point[0] = from[first];
+          point[1] = from[first + 1];
+          point[2] = from[first + 2];
         }
         else
         {

@@ -47,6 +47,10 @@ public:
   /// The m numbers at t.
   Eigen::VectorXd Evaluate(double t, const ExecutionContext& context = {}) const;
 
+  /// The same into `result` (m).
+  void Evaluate(
+    double t, Eigen::Ref<Eigen::VectorXd> result, const ExecutionContext& context = {}) const;
+
   /// The same with a parameter for each item (#items), which has m / #items rows.
   Eigen::VectorXd EvaluateEach(
     const Eigen::VectorXd& parameters, const ExecutionContext& context = {}) const;

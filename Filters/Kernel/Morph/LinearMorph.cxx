@@ -19,8 +19,17 @@ LinearMorph::LinearMorph(const KeyFrames& keys)
 Points LinearMorph::Evaluate(const MorphPlace& place, const ExecutionContext& context)
 {
   const auto size = static_cast<int>(this->Coordinates.GetValues().rows() / 3);
-  const Eigen::VectorXd coordinates = place.Sample(
-    this->Coordinates, size, [](int v) { return std::array{ v }; }, context);
-  return Eigen::Map<const Points>(coordinates.data(), size, 3);
+  Points points(size, 3);
+  Eigen::Map<Eigen::VectorXd> coordinates(points.data(), points.size());
+  if (place.IsUniform())
+  {
+    this->Coordinates.Evaluate(place.GetParameter(), coordinates, context);
+  }
+  else
+  {
+    coordinates = place.Sample(
+      this->Coordinates, size, [](int v) { return std::array{ v }; }, context);
+  }
+  return points;
 }
 }
