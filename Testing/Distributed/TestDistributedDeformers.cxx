@@ -308,6 +308,51 @@ TEST(DistributedDeformers, DifferentAxesAreNotRefined)
   EXPECT_LE(Difference(result.Positions, expected.Positions, piece, *mesh), 1e-8);
 }
 
+TEST(DistributedDeformers, WhatPiecesAreNotServedIsRefused)
+{
+  const auto group = pieces::World();
+  const Shape shape = shapes::Torus(30, 14);
+  const HandleProblem whole = pieces::WholeProblem(shape, shapes::EndsAlong(shape, 0, 0.15), { 2 });
+  const Piece piece = pieces::CutOut(shape, pieces::Slices(shape, group->GetSize()), group);
+  const auto mesh = std::make_shared<const DistributedMesh>(piece.Surface);
+  const HandleProblem part = pieces::PartOf(whole, piece, mesh);
+  const auto textOf = [&](cartan::SurfaceDeformer& deformer, const HandleTargets& targets)
+  {
+    std::string text;
+    cartan::DeformedSurface result;
+    try
+    {
+      group->Together([&] { deformer.Deform(targets, false, result, {}); });
+    }
+    catch (const cartan::Error& error)
+    {
+      text = error.what();
+    }
+    return text;
+  };
+  const HandleTargets targets = Turns(whole, 0.5);
+  const std::string gather = shapes::Advice("gather the surface on one process.");
+  cartan::ShapePreservingDeformer deformer(part);
+  EXPECT_EQ(textOf(deformer, targets), "");
+  deformer.SetVolumeModel(std::make_shared<const cartan::VolumeModel>());
+  EXPECT_EQ(textOf(deformer, targets), "");
+  deformer.SetVolumeCorrection(cartan::VolumeCorrection::NeutralOffset);
+  EXPECT_NE(textOf(deformer, targets).find(gather), std::string::npos);
+  deformer.SetVolumeCorrection(cartan::VolumeCorrection::None);
+  HandleTargets arrays = targets;
+  for (int v = 0; v < mesh->NumberOfVertices(); ++v)
+  {
+    arrays.Vertices.push_back(v);
+  }
+  arrays.Positions = *part.Rest;
+  EXPECT_NE(textOf(deformer, arrays)
+              .find(shapes::Advice("give each handle a motion instead of arrays of targets, or "
+                                   "gather the surface on one process.")),
+    std::string::npos);
+  cartan::PoissonDeformer geodesic(part, cartan::Propagation::Geodesic);
+  EXPECT_NE(textOf(geodesic, targets).find(gather), std::string::npos);
+}
+
 /// A handle turns about one axis: each method that tabulates it.
 template <typename Deformer>
 void ExpectSilentTable()

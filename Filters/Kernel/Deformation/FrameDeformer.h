@@ -100,11 +100,13 @@ protected:
     return {};
   }
 
-  bool PreservesVolume() const
+  /// Depths and volumes are those of the whole.
+  bool KeepsNoVolume() const
   {
-    return this->Model && !this->Model->IsEmpty() &&
-      (this->Correction != VolumeCorrection::None || this->Close);
+    return !this->Model || (this->Correction == VolumeCorrection::None && !this->Close);
   }
+
+  bool PreservesVolume() const { return !this->KeepsNoVolume() && !this->Model->IsEmpty(); }
 
   std::shared_ptr<const Eigen::VectorXd> EdgeWeights;
   /// The system of the frames, and of the positions where it is the same.

@@ -40,6 +40,7 @@ public:
   static void RequireMotions(const HandleTargets& targets);
 
 protected:
+  bool ServesPieces() const override { return this->KeepsNoVolume() && this->Harmonic.has_value(); }
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
 
 private:

@@ -52,6 +52,7 @@ public:
   void SetFrameProjection(FrameProjection projection) { this->Projection = projection; }
 
 protected:
+  bool ServesPieces() const override { return this->KeepsNoVolume(); }
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
   bool DeformDirectly(
     const HandleTargets& targets, Points& positions, const ExecutionContext& context) override;

@@ -63,6 +63,7 @@ public:
   }
 
 protected:
+  bool ServesPieces() const override { return this->KeepsNoVolume(); }
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
   bool FindTurns(
     const HandleTargets& targets, Eigen::Vector3d& axis, Eigen::VectorXd& angles) override;

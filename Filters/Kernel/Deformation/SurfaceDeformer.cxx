@@ -27,9 +27,25 @@ void PlaceRidersOfHandles(
 }
 }
 
+void SurfaceDeformer::RequireWholeUnlessServed(const HandleTargets& targets) const
+{
+  if (this->Problem.Pieces && !this->ServesPieces())
+  {
+    throw Error(ErrorCode::BadInput,
+      "These settings do not serve a surface in pieces: gather the surface on one process.");
+  }
+  if (this->Problem.Pieces && (targets.IsPerVertex() || targets.RotationVectors.rows()))
+  {
+    throw Error(ErrorCode::BadInput,
+      "Handles of a surface in pieces move as a whole: give each handle a motion instead of arrays "
+      "of targets, or gather the surface on one process.");
+  }
+}
+
 void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
+  this->RequireWholeUnlessServed(targets);
   if (!this->Common)
   {
     this->Common = std::make_unique<CommonMotion>(this->Problem);

@@ -63,6 +63,9 @@ protected:
   /// motion; not where something else moves them too.
   virtual bool FollowsRigidHandles() const { return true; }
 
+  /// Whether the method works on a piece; else Deform() throws Error(BadInput) there.
+  virtual bool ServesPieces() const { return false; }
+
   /// What the targets of DeformRelative are relative to: for results beside the surface.
   const RigidMotion& GetCommonMotion() const { return this->Common->GetMotion(); }
 
@@ -75,6 +78,8 @@ protected:
   HandleProblem Problem;
 
 private:
+  void RequireWholeUnlessServed(const HandleTargets& targets) const;
+
   std::unique_ptr<CommonMotion> Common; ///< from the first motion on
 };
 }
