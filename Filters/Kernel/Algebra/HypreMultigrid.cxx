@@ -280,21 +280,21 @@ VectorXd ProbeVector(Eigen::Index size)
 
 /// Conjugate gradients measure the norm of A, and their residual drifts from b - A x by
 /// rounding. So they start again from the true one until that is small too.
-MultigridResult SolveByMultigrid(HypreMultigrid& matrix, const VectorXd& given,
-  Eigen::Ref<VectorXd> result, const std::function<void(double)>& report,
+MultigridResult SolveByMultigrid(HypreMultigrid& matrix, const VectorXd& rightHandSide,
+  Eigen::Ref<VectorXd> solution, const std::function<void(double)>& report,
   const Reductions& reductions)
 {
   // Squares of the largest and smallest numbers are none.
-  const double scale = reductions.Max(given.cwiseAbs().maxCoeff());
+  const double scale = reductions.Max(rightHandSide.cwiseAbs().maxCoeff());
   if (!(scale > 0.0) || !std::isfinite(scale))
   {
-    result.setConstant(scale);
+    solution.setConstant(scale);
     return { SolverStatus::Ok, 0 };
   }
-  const VectorXd rightHandSide = given / scale;
-  const double size = NormOf(rightHandSide, reductions);
-  VectorXd solution = VectorXd::Zero(rightHandSide.size());
-  VectorXd residual = rightHandSide;
+  const VectorXd scaled = rightHandSide / scale;
+  const double size = NormOf(scaled, reductions);
+  VectorXd iterate = VectorXd::Zero(scaled.size());
+  VectorXd residual = scaled;
   double left = size;
   bool isIndefinite = false;
   bool hasConverged = true;
@@ -320,17 +320,17 @@ MultigridResult SolveByMultigrid(HypreMultigrid& matrix, const VectorXd& given,
     };
     const auto precondition = [&matrix](const VectorXd& vector)
     { return matrix.Precondition(vector); };
-    const ConjugateGradientsResult run = ConjugateGradients(solution, residual, apply, precondition,
+    const ConjugateGradientsResult run = ConjugateGradients(iterate, residual, apply, precondition,
       { reduction, MaximumSteps - steps }, reportStep, reductions.Sum);
     hasConverged = run.HasConverged;
     steps += std::max(1, run.Steps); // so that it ends
-    residual = rightHandSide - matrix.Apply(solution);
+    residual = scaled - matrix.Apply(iterate);
     left = NormOf(residual, reductions);
     reduction = 0.1 * Tolerance * size / left;
     status = static_cast<SolverStatus>(
       static_cast<int>(reductions.Max(static_cast<double>(TakeHypreStatus()))));
   }
-  result = scale * solution;
+  solution = scale * iterate;
   if (status != SolverStatus::Ok || isIndefinite)
   {
     return { isIndefinite ? SolverStatus::NotPositiveDefinite : status, steps };

@@ -102,12 +102,14 @@ void DistributedSolver::Release()
   }
 }
 
-SolverStatus DistributedSolver::Analyze(const SparseMatrix& /*lower*/)
+SolverStatus DistributedSolver::Analyze(const SparseMatrix& lower)
 {
-  // hypre numbers the unknowns of all ranks together, with int.
-  Eigen::VectorXd count = Eigen::VectorXd::Constant(1, static_cast<double>(this->Own.size()));
-  this->Rows->GetRanks().Sum(count);
-  return count[0] > std::numeric_limits<int>::max() ? SolverStatus::TooLarge : SolverStatus::Ok;
+  // hypre numbers the unknowns, and counts the entries, of all ranks together with int.
+  // Those of ghosts are counted twice.
+  Eigen::VectorXd entries = Eigen::VectorXd::Constant(
+    1, 2.0 * static_cast<double>(lower.nonZeros()) - static_cast<double>(lower.rows()));
+  this->Rows->GetRanks().Sum(entries);
+  return entries[0] > std::numeric_limits<int>::max() ? SolverStatus::TooLarge : SolverStatus::Ok;
 }
 
 /// Unknowns are numbered rank by rank.
