@@ -807,6 +807,28 @@ TEST(SimilarityDeformer, FactorizesOncePerSystemAndBackendsAgree)
   EXPECT_LT(Distance(results[1], results[3]), 1e-9);
 }
 
+// Motions of handles need the fields alone; targets by vertices need the factor again.
+TEST(SimilarityDeformer, ReleasesTheFactorThatFieldsReplace)
+{
+  const Shape bar = shapes::Bar(4, 4, 16, { 1.0, 1.0, 4.0 });
+  const HandleProblem problem = MakeProblem(bar, 0.15);
+  const HandleMotion motion = Motion(RotationFromVector({ 0.9, 0.2, 0.0 }), { 0.1, 0.0, 0.3 });
+  HandleTargets byVertex = Targets({ motion });
+  byVertex.Vertices = shapes::Ids(bar.Positions.rows());
+  byVertex.Positions =
+    (bar.Positions * motion.Linear.transpose()).rowwise() + motion.Translation.transpose();
+  SimilarityDeformer deformer(problem, {});
+  const Points ofMotion = Deform(deformer, Targets({ motion })).Positions;
+  const std::size_t released = deformer.GetBytes();
+  EXPECT_EQ(deformer.GetNumberOfFactorizations(), 2);
+  EXPECT_LT(Distance(Deform(deformer, byVertex).Positions, ofMotion), 1e-10);
+  EXPECT_EQ(deformer.GetNumberOfFactorizations(), 3);
+  EXPECT_LT(1.5 * static_cast<double>(released), static_cast<double>(deformer.GetBytes()));
+  Deform(deformer, byVertex);
+  EXPECT_TRUE(Deform(deformer, Targets({ motion })).Positions == ofMotion);
+  EXPECT_EQ(deformer.GetNumberOfFactorizations(), 3);
+}
+
 TEST(SimilarityDeformer, RefusesHandlesThatDoNotDetermineTheSurface)
 {
   const Shape bar = shapes::Bar(4, 4, 16, { 1.0, 1.0, 4.0 });

@@ -15,7 +15,7 @@ import numpy
 import vtkcartan
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_ID_TYPE
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkTable
 from vtkmodules.vtkCommonExecutionModel import vtkTrivialProducer
 
 import scan
@@ -87,12 +87,25 @@ def opened(source):
     return producer
 
 
+def misfit(forms):
+    """The forms with angles that those of no surface are."""
+    table = vtkTable()
+    table.DeepCopy(forms.GetOutputDataObject(1))
+    angles = vtk_to_numpy(table.GetColumnByName("Angle"))
+    angles += 0.1 * numpy.sin(numpy.arange(len(angles)))
+    producer = vtkTrivialProducer()
+    producer.SetOutput(table)
+    return producer
+
+
 def cases(marked, forms, bent):
     """Names, and what makes the filter."""
     yield "vtkMarkHandle, growing", lambda: connected(
         "MarkHandle", marked, HandleId=3, GrowDistance=1e-3, Region=marked.GetRegion())
     yield "vtkDiscreteForms", lambda: connected("DiscreteForms", marked)
     yield "vtkFrameReconstruction", lambda: connected("FrameReconstruction", marked, (forms, 1))
+    yield "vtkFrameReconstruction, forms of no surface", lambda: connected(
+        "FrameReconstruction", marked, misfit(forms))
     yield "vtkPrepareSurface", lambda: connected("PrepareSurface", marked)
     yield "vtkRestoreSurface", lambda: connected(
         "RestoreSurface", connected("PrepareSurface", marked), marked)
@@ -105,6 +118,8 @@ def cases(marked, forms, bent):
     yield "vtkCoatingTransfer", lambda: connected("CoatingTransfer", marked, marked)
     for method in ("DiscreteForms", "Isometric", "DeformationGradient", "Linear"):
         yield "vtkSurfaceMorph, " + method, lambda method=method: morph(method, marked, bent)
+    yield "vtkSurfaceMorph, ConjugateGradients", lambda: morph(
+        "DiscreteForms", marked, bent, FrameSolver=vtkcartan.vtkSurfaceMorph.CONJUGATE_GRADIENTS)
     yield "vtkSurfaceMorph, Direct", lambda: morph(
         "DiscreteForms", marked, bent, FrameSolver=vtkcartan.vtkSurfaceMorph.DIRECT)
     yield "vtkSurfaceMorph, Isometric, polish", lambda: morph(

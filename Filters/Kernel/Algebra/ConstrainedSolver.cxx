@@ -3,6 +3,7 @@
 
 #include "Base/Bytes.h"
 #include "Base/FloodFill.h"
+#include "Base/FreedMemory.h"
 
 #include <algorithm>
 #include <new>
@@ -240,6 +241,11 @@ void ConstrainedSolver::Factorize(SparseMatrix&& matrix, const std::vector<char>
 void ConstrainedSolver::FactorizeFree(const SparseMatrix& block, const ExecutionContext& context)
 {
   const Eigen::Index numberOfFree = block.rows();
+  constexpr Eigen::Index large = 1000000; // whose factorization takes much longer
+  if (block.nonZeros() > large)
+  {
+    ReturnFreedMemory();
+  }
   const std::uint64_t pattern = FingerprintOf(block);
   const bool isAnalyzed = pattern == this->Pattern;
   // None until it is factorized: the next call must not reuse what a failure

@@ -42,8 +42,58 @@ std::int64_t CountTerms(const SparseRows<Value>& left, const SparseRows<Value>& 
   return terms;
 }
 
-/// The rows of NormalMatrix.
-SparseRows<double> NormalRows(int size, int numberOfFree, const SparseRows<double>& residuals,
+/// A matrix of `size` rows that makeRange makes as AppendRows wants them.
+SparseMatrix MatrixOfRows(int size, const ExecutionContext& context,
+  const std::function<void(int, int, SparseRows<double>&)>& makeRange)
+{
+  SparseMatrix matrix(size, size);
+  Eigen::Index entries = 0;
+  for (const auto& [first, last] : RowBlocks(size))
+  {
+    SparseRows<double> rows;
+    AppendRows(first, last, context, makeRange, rows);
+    const std::size_t count = static_cast<std::size_t>(entries) + rows.Entries.size();
+    matrix.data().reserve(static_cast<Eigen::Index>(ExpectedEntries(count, last, size)) - entries);
+    matrix.data().resize(static_cast<Eigen::Index>(count));
+    for (int row = first; row < last; ++row)
+    {
+      for (const auto* entry = rows.Begin(row - first); entry != rows.End(row - first); ++entry)
+      {
+        matrix.innerIndexPtr()[entries] = entry->Column;
+        matrix.valuePtr()[entries] = entry->Coefficient;
+        ++entries;
+      }
+      matrix.outerIndexPtr()[row + 1] = static_cast<int>(entries);
+    }
+  }
+  return matrix;
+}
+}
+
+std::vector<std::pair<int, int>> RowBlocks(int count)
+{
+  constexpr int blocks = 8;
+  std::vector<std::pair<int, int>> ends;
+  for (int block = 0; block < blocks; ++block)
+  {
+    const auto end = [count](int number)
+    { return static_cast<int>(static_cast<std::int64_t>(count) * number / blocks); };
+    if (end(block) < end(block + 1))
+    {
+      ends.emplace_back(end(block), end(block + 1));
+    }
+  }
+  return ends;
+}
+
+std::size_t ExpectedEntries(std::size_t entries, int made, int count)
+{
+  // A twentieth more than so far on the average.
+  const double expected = 1.05 * static_cast<double>(entries) / made * count;
+  return made < count ? std::max(entries, static_cast<std::size_t>(expected)) : entries;
+}
+
+SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& residuals,
   const SparseRows<Eigen::Vector3d>& gradients, const SparseRows<Eigen::Vector3d>& differences,
   const ExecutionContext& context)
 {
@@ -70,7 +120,7 @@ SparseRows<double> NormalRows(int size, int numberOfFree, const SparseRows<doubl
     }
     RequireIndexable(entries, "The normal system");
   }
-  return MakeRows<double>(size, context,
+  return MatrixOfRows(size, context,
     [&](int begin, int end, SparseRows<double>& part)
     {
       RowSum<double> sum(size);
@@ -88,23 +138,5 @@ SparseRows<double> NormalRows(int size, int numberOfFree, const SparseRows<doubl
         part.FinishRow();
       }
     });
-}
-}
-
-SparseMatrix NormalMatrix(int size, int numberOfFree, const SparseRows<double>& residuals,
-  const SparseRows<Eigen::Vector3d>& gradients, const SparseRows<Eigen::Vector3d>& differences,
-  const ExecutionContext& context)
-{
-  const SparseRows<double> rows =
-    NormalRows(size, numberOfFree, residuals, gradients, differences, context);
-  SparseMatrix matrix(size, size);
-  matrix.resizeNonZeros(static_cast<Eigen::Index>(rows.Entries.size()));
-  std::copy(rows.Offsets.begin(), rows.Offsets.end(), matrix.outerIndexPtr());
-  for (std::size_t i = 0; i < rows.Entries.size(); ++i)
-  {
-    matrix.innerIndexPtr()[i] = rows.Entries[i].Column;
-    matrix.valuePtr()[i] = rows.Entries[i].Coefficient;
-  }
-  return matrix;
 }
 }

@@ -59,40 +59,57 @@ std::size_t BytesOf(const SparseRows<Value>& rows)
   return TotalBytes(rows.Offsets, rows.Entries);
 }
 
-/// `count` rows; makeRange(begin, end, rows) appends those from begin to end - 1,
-/// in any order of the ranges and from any thread.
+/// Rows from `first` to `last` - 1 behind those of `rows`; makeRange(begin, end, part)
+/// appends those from begin to end - 1 to `part`, in any order of the ranges and from any
+/// thread.
 template <typename Value>
-SparseRows<Value> MakeRows(int count, const ExecutionContext& context,
-  const std::function<void(int begin, int end, SparseRows<Value>& rows)>& makeRange)
+void AppendRows(int first, int last, const ExecutionContext& context,
+  const std::function<void(int begin, int end, SparseRows<Value>& part)>& makeRange,
+  SparseRows<Value>& rows)
 {
   std::vector<std::pair<int, SparseRows<Value>>> parts;
   std::mutex mutex;
-  context.For(count,
+  context.For(last - first,
     [&](int begin, int end)
     {
       SparseRows<Value> part;
-      makeRange(begin, end, part);
+      makeRange(first + begin, first + end, part);
       const std::lock_guard<std::mutex> lock(mutex);
       parts.emplace_back(begin, std::move(part));
     });
   std::sort(
     parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  SparseRows<Value> all;
   for (auto& [begin, part] : parts)
   {
-    if (begin == 0)
-    {
-      all = std::move(part);
-      continue;
-    }
+    const std::size_t entries = rows.Entries.size();
     for (int row = 0; row < part.Count(); ++row)
     {
-      all.Offsets.push_back(all.Entries.size() + part.Offsets[row + 1]);
+      rows.Offsets.push_back(entries + part.Offsets[row + 1]);
     }
-    all.Entries.insert(all.Entries.end(), part.Entries.begin(), part.Entries.end());
+    rows.Entries.insert(rows.Entries.end(), part.Entries.begin(), part.Entries.end());
     part = {};
   }
-  return all;
+}
+
+/// The first and one past the last row of each of a few blocks of `count` rows: what is made
+/// block by block takes little more memory than what is made of it.
+std::vector<std::pair<int, int>> RowBlocks(int count);
+
+/// So many entries as `made` rows of `count` let expect for all, and a few more.
+std::size_t ExpectedEntries(std::size_t entries, int made, int count);
+
+/// `count` rows by AppendRows.
+template <typename Value>
+SparseRows<Value> MakeRows(int count, const ExecutionContext& context,
+  const std::function<void(int begin, int end, SparseRows<Value>& part)>& makeRange)
+{
+  SparseRows<Value> rows;
+  for (const auto& [first, last] : RowBlocks(count))
+  {
+    AppendRows(first, last, context, makeRange, rows);
+    rows.Entries.reserve(ExpectedEntries(rows.Entries.size(), last, count));
+  }
+  return rows;
 }
 
 /// A row in the making: sums by column.

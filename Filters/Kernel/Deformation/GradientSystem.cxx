@@ -2,6 +2,7 @@
 #include "Deformation/GradientSystem.h"
 
 #include "Base/FloodFill.h"
+#include "Base/FreedMemory.h"
 #include "Deformation/HeldPoints.h"
 #include "Differential/Laplacian.h"
 #include "Mesh/TriangleShape.h"
@@ -104,7 +105,9 @@ GradientSystem::GradientSystem(const HandleProblem& problem, int coherenceRings,
   bool constrainTransforms, SolverBackend backend, const ExecutionContext& context)
   : MovingHandles(MovingHandleOfVertices(problem))
   , EdgeWeights(cartan::EdgeWeights(*problem.Mesh, *problem.Rest, problem.Weights, context))
-  , System(RequireDirect(backend, "Similarity deformation"), GradientLimits(problem))
+  , Backend(RequireDirect(backend, "Similarity deformation"))
+  , System(this->Backend, GradientLimits(problem))
+  , StoresFields(StoresHandleFields(problem))
 {
   const GradientConstraints constraints = this->ReadConstraints(problem, constrainTransforms);
   this->RequireDeterminedSurface(problem, constraints);
@@ -112,6 +115,14 @@ GradientSystem::GradientSystem(const HandleProblem& problem, int coherenceRings,
   this->Gradients = std::make_unique<RingGradients>(
     *problem.Mesh, *problem.Rest, constraints, std::max(1, coherenceRings), context.Part(0.0, 0.3));
   this->Factorize(*problem.Mesh, context.Part(0.3, 1.0));
+  if (this->StoresFields)
+  {
+    this->ComputeDragFields(problem);
+    this->ReleasedFactorizations = this->GetNumberOfFactorizations();
+    this->System = AnchoredSystem(this->Backend, GradientLimits(problem));
+    this->IsFactorized = false;
+    ReturnFreedMemory();
+  }
 }
 
 GradientConstraints GradientSystem::ReadConstraints(
@@ -305,9 +316,14 @@ void GradientSystem::Factorize(const TriangleMesh& mesh, const ExecutionContext&
   context.Report(0.3);
   Anchors anchors;
   anchors.IsHard.resize(size);
+  this->Unknowns.clear();
   for (int column = 0; column < size; ++column)
   {
     anchors.IsHard[column] = !gradients.IsUnknownColumn(column);
+    if (gradients.IsUnknownColumn(column))
+    {
+      this->Unknowns.push_back(column);
+    }
   }
   anchors.Vertices.assign(size, -1);
   this->Stiffness.setZero(size);
@@ -321,23 +337,23 @@ void GradientSystem::Factorize(const TriangleMesh& mesh, const ExecutionContext&
   anchors.Stiffness = this->Stiffness;
   this->System.Factorize(std::move(matrix), anchors, context.Part(0.3, 1.0));
   RequireTranslations(this->System, anchors);
-  this->Values.setZero(size, 3);
+  this->IsFactorized = true;
 }
 
 void GradientSystem::Solve(
   const HandleProblem& problem, const HandleTargets& targets, const ExecutionContext& context)
 {
   this->ReadTargets(problem, targets);
-  if (targets.IsPerVertex() || !StoresHandleFields(problem))
+  if (this->StoresFields && !targets.IsPerVertex())
   {
-    this->SolveColumns();
+    this->BlendDragFields(targets, context);
     return;
   }
-  if (this->DragFields.rows() == 0)
+  if (!this->IsFactorized)
   {
-    this->ComputeDragFields(problem);
+    this->Factorize(*problem.Mesh, context);
   }
-  this->BlendDragFields(targets, context);
+  this->SolveColumns();
 }
 
 void GradientSystem::ReadTargets(const HandleProblem& problem, const HandleTargets& targets)
@@ -400,24 +416,18 @@ void GradientSystem::ComputeDragFields(const HandleProblem& problem)
     column += 3;
   }
   this->System.Interpolate(fields);
-  const std::vector<int>& unknowns = this->System.GetFree();
-  this->DragFields.resize(static_cast<Eigen::Index>(unknowns.size()), fields.cols());
-  for (std::size_t i = 0; i < unknowns.size(); ++i)
-  {
-    this->DragFields.row(static_cast<Eigen::Index>(i)) = fields.row(unknowns[i]);
-  }
+  this->DragFields = fields(this->Unknowns, Eigen::all);
 }
 
 void GradientSystem::BlendDragFields(const HandleTargets& targets, const ExecutionContext& context)
 {
-  const std::vector<int>& unknowns = this->System.GetFree();
-  context.For(static_cast<int>(unknowns.size()),
+  context.For(static_cast<int>(this->Unknowns.size()),
     [&](int begin, int end)
     {
       for (int i = begin; i < end; ++i)
       {
         // The motions' identities together leave the rest shape.
-        Eigen::Vector3d value = this->Gradients->RestValues().row(unknowns[i]).transpose();
+        Eigen::Vector3d value = this->Gradients->RestValues().row(this->Unknowns[i]).transpose();
         for (std::size_t k = 0; k < targets.Motions.size(); ++k)
         {
           const double* phi = this->DragFields.row(i).data() + 4 * k;
@@ -425,7 +435,7 @@ void GradientSystem::BlendDragFields(const HandleTargets& targets, const Executi
           value +=
             targets.Motions[k].Linear * along - along + phi[3] * targets.Motions[k].Translation;
         }
-        this->Values.row(unknowns[i]) = value.transpose();
+        this->Values.row(this->Unknowns[i]) = value.transpose();
       }
     });
 }

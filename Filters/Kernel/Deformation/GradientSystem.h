@@ -18,7 +18,8 @@ namespace cartan
 class GradientSystem
 {
 public:
-  /// Factorizes. Throws what SimilarityDeformer's constructor throws.
+  /// Factorizes, and computes the fields if they are stored. Throws what SimilarityDeformer's
+  /// constructor throws.
   GradientSystem(const HandleProblem& problem, int coherenceRings, bool constrainTransforms,
     SolverBackend backend, const ExecutionContext& context);
 
@@ -51,12 +52,15 @@ public:
   /// Writes the unknown vertices' positions.
   void WritePositions(Points& positions) const;
 
-  int GetNumberOfFactorizations() const { return this->System.GetNumberOfFactorizations(); }
+  int GetNumberOfFactorizations() const
+  {
+    return this->ReleasedFactorizations + this->System.GetNumberOfFactorizations();
+  }
   std::size_t GetBytes() const
   {
     return this->Gradients->GetBytes() + this->System.GetBytes() +
       TotalBytes(this->MovingHandles, this->SoftPositions, this->EdgeWeights, this->RowScales,
-        this->EdgeLengths, this->Stiffness, this->Values, this->DragFields);
+        this->EdgeLengths, this->Stiffness, this->Unknowns, this->Values, this->DragFields);
   }
 
 private:
@@ -78,11 +82,15 @@ private:
   Eigen::VectorXd RowScales;
   Eigen::VectorXd EdgeLengths; // #V, h_i
   std::unique_ptr<RingGradients> Gradients;
+  SolverBackend Backend;
   AnchoredSystem System;
+  bool IsFactorized = false;
+  int ReleasedFactorizations = 0;
   Eigen::VectorXd Stiffness;
+  std::vector<int> Unknowns; // the columns that are solved for
   Field Values;
-  // #unknown columns x 4 #Moving, the phi_k and h_k of SimilarityDeformer; empty
-  // until first needed.
+  bool StoresFields;
+  // #unknown columns x 4 #Moving, the phi_k and h_k of SimilarityDeformer.
   Field DragFields;
 };
 }

@@ -117,7 +117,7 @@ void SimilarityDeformer::ComputeTransforms(
   const HandleTargets& targets, const ExecutionContext& context)
 {
   const RingGradients& gradients = this->System.GetGradients();
-  this->System.Solve(this->Problem, targets, context);
+  this->System.Solve(this->Problem, targets, context.Part(0.0, 0.6));
   context.Report(0.6);
 
   const int numberOfVertices = this->Problem.Mesh->NumberOfVertices();

@@ -194,8 +194,15 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices frames, AnchoredSystem& system,
   const ExecutionContext& context, const Eigen::VectorXd& weights)
 {
-  system.Factorize(FrameMatrix(mesh, transitions, weights),
-    Anchors::Hard(FixUnused(mesh, isFixed)).Repeated(3), context);
+  return SolveFrames(
+    mesh, FrameMatrix(mesh, transitions, weights), isFixed, std::move(frames), system, context);
+}
+
+Matrices SolveFrames(const TriangleMesh& mesh, SparseMatrix&& matrix,
+  const std::vector<char>& isFixed, Matrices frames, AnchoredSystem& system,
+  const ExecutionContext& context)
+{
+  system.Factorize(std::move(matrix), Anchors::Hard(FixUnused(mesh, isFixed)).Repeated(3), context);
   Field solution = TransposedFrames(frames);
   system.Interpolate(solution);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)

@@ -29,6 +29,11 @@ Matrices SolveFrames(const TriangleMesh& mesh, const Transitions& transitions,
   const std::vector<char>& isFixed, Matrices frames, AnchoredSystem& system,
   const ExecutionContext& context = {}, const Eigen::VectorXd& weights = {});
 
+/// The same from the FrameMatrix, which is released before the factorization takes its memory.
+Matrices SolveFrames(const TriangleMesh& mesh, SparseMatrix&& matrix,
+  const std::vector<char>& isFixed, Matrices frames, AnchoredSystem& system,
+  const ExecutionContext& context = {});
+
 /// The same frames by conjugate gradients, without a factorization of the 3 #V
 /// matrix. `start` must be rotations near the result: relative to them the
 /// matrix is nearly three graph Laplacians, whose factors are the

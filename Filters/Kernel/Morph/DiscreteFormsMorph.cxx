@@ -257,7 +257,7 @@ Matrices DiscreteFormsMorph::FramesAt(
 }
 
 Matrices DiscreteFormsMorph::LinearFrames(
-  const Matrices& edgeTransitions, Matrices frames, const ExecutionContext& context)
+  Matrices edgeTransitions, Matrices frames, const ExecutionContext& context)
 {
   const TriangleMesh& mesh = *this->Mesh;
   cartan::Transitions transitions(mesh.NumberOfDirectedEdges(), 9);
@@ -268,11 +268,19 @@ Matrices DiscreteFormsMorph::LinearFrames(
     MatrixAt(transitions, d) = forward;
     MatrixAt(transitions, mesh.Twin(d)) = forward.transpose();
   }
-  frames = this->Solver == FrameSolver::Direct
-    ? SolveFrames(mesh, transitions, mesh.Grounded(), std::move(frames), this->FrameSystem, context,
-        this->Weights)
-    : SolveFramesFrom(mesh, transitions, mesh.Grounded(), std::move(frames), *this->Laplacian,
-        &this->Iterations, context, this->Weights);
+  edgeTransitions.resize(0, 9);
+  if (this->Solver == FrameSolver::Direct)
+  {
+    SparseMatrix matrix = FrameMatrix(mesh, transitions, this->Weights);
+    transitions.resize(0, 9); // before the factorization takes its memory
+    frames = SolveFrames(
+      mesh, std::move(matrix), mesh.Grounded(), std::move(frames), this->FrameSystem, context);
+  }
+  else
+  {
+    frames = SolveFramesFrom(mesh, transitions, mesh.Grounded(), std::move(frames),
+      *this->Laplacian, &this->Iterations, context, this->Weights);
+  }
   context.For(mesh.NumberOfVertices(),
     [&](int begin, int end)
     {
@@ -308,12 +316,13 @@ Points DiscreteFormsMorph::Evaluate(const MorphPlace& place, const ExecutionCont
   this->Warning.clear();
   const Eigen::VectorXd lengths = this->LengthsAt(place, context);
   const Points rings = this->RingsAt(place, lengths, context);
-  const Matrices edgeTransitions = this->EdgeTransitionsAt(place, rings, context);
+  Matrices edgeTransitions = this->EdgeTransitionsAt(place, rings, context);
   const bool isLinear = this->Solver != FrameSolver::RotationAveraging;
   Matrices frames = this->FramesAt(place, edgeTransitions, context.Part(0.1, isLinear ? 0.4 : 0.8));
   if (isLinear)
   {
-    frames = this->LinearFrames(edgeTransitions, std::move(frames), context.Part(0.4, 0.8));
+    frames =
+      this->LinearFrames(std::move(edgeTransitions), std::move(frames), context.Part(0.4, 0.8));
   }
   context.Report(0.8);
   Field positions = Field::Zero(mesh.NumberOfVertices(), 3);

@@ -95,8 +95,7 @@ private:
   Matrices FramesAt(
     const MorphPlace& place, const Matrices& edgeTransitions, const ExecutionContext& context);
   bool Average(const Matrices& edgeTransitions, Matrices& frames, const ExecutionContext& context);
-  Matrices LinearFrames(
-    const Matrices& edgeTransitions, Matrices frames, const ExecutionContext& context);
+  Matrices LinearFrames(Matrices edgeTransitions, Matrices frames, const ExecutionContext& context);
   void WarnOfLengths(double t, const Eigen::VectorXd& lengths, const Points& positions);
 
   std::shared_ptr<const TriangleMesh> Mesh;
