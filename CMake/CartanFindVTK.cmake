@@ -30,5 +30,5 @@ endif ()
 find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_components}
   OPTIONAL_COMPONENTS
     PythonInterpreter   # the plugin's, for traces
-    InteractionWidgets) # the tests'
+    InteractionWidgets ParallelMPI FiltersParallelDIY2) # the tests'
 message(STATUS "VTK ${VTK_VERSION} in ${VTK_DIR}; ParaView plugin: ${CARTAN_BUILD_PLUGIN}")

@@ -236,6 +236,8 @@ protected:
   void UsePreparedInput(cartan::FilterRun&) const override { this->RefusePrepareInput(); }
   void Execute(cartan::FilterRun& run) override;
   void ForgetResults() override { this->Report.clear(); }
+  // What its arrays say of points and cells is about the joined surface.
+  bool HandsBackPieces() const override { return false; }
 
 private:
   bool MergePoints = true;

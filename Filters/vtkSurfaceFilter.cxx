@@ -2,21 +2,44 @@
 #include "vtkSurfaceFilter.h"
 
 #include "Bridge/FilterRun.h"
+#include "Bridge/GatheredRun.h"
 
+#include "vtkCommand.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <vector>
 
 namespace
 {
 constexpr double Megabyte = 1e6;
+
+bool AcceptsBlocks(vtkInformation* port)
+{
+  const int count = port->Length(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  for (int index = 0; index < count; ++index)
+  {
+    if (port->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), index) ==
+      std::string("vtkCompositeDataSet"))
+    {
+      return true;
+    }
+  }
+  return false;
+}
 }
 
 vtkSurfaceFilter::vtkSurfaceFilter()
   : Kept(std::make_unique<cartan::KeptResults>())
 {
+  // The executive hands composite data over block by block: only here they are whole.
+  this->AddObserver(vtkCommand::StartEvent, this, &vtkSurfaceFilter::LookForBlocks);
 }
 
 vtkSurfaceFilter::~vtkSurfaceFilter() = default;
@@ -25,6 +48,7 @@ void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "PrepareInput: " << this->PrepareInput << "\n";
+  os << indent << "GatherLimit: " << this->GatherLimit << "\n";
   os << indent << "KeptMemoryLimit: " << this->KeptMemoryLimit << "\n";
   os << indent << "KeptMemory: " << this->GetKeptMemory() << "\n";
 }
@@ -78,6 +102,132 @@ void vtkSurfaceFilter::RefusePrepareInput() const
       ": turn it off, and connect the output of vtkPrepareSurface (Prepare Surface).");
 }
 
+void vtkSurfaceFilter::ReportProblem(const std::string& problem, bool isCollective)
+{
+  this->SetErrorCode(vtkErrorCode::UserError);
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  if (!isCollective || !controller || controller->GetLocalProcessId() == 0)
+  {
+    vtkErrorMacro(<< problem << (this->Numbering.empty() ? "" : " ") << this->Numbering);
+  }
+}
+
+void vtkSurfaceFilter::LookForBlocks()
+{
+  this->HasBlocks = false;
+  this->RefusesBlocks = false;
+  vtkMultiProcessController* controller = cartan::RankGroup::ControllerOf(this);
+  if (!controller)
+  {
+    return;
+  }
+  bool hasBlocks = false;
+  vtkIdType points = 0;
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    for (int index = 0; index < this->GetNumberOfInputConnections(port); ++index)
+    {
+      auto* blocks = vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(port, index));
+      if (blocks && !AcceptsBlocks(this->GetInputPortInformation(port)))
+      {
+        hasBlocks = true;
+        points += blocks->GetNumberOfPoints();
+      }
+    }
+  }
+  const cartan::RankGroup ranks(controller);
+  this->HasBlocks = ranks.Any(hasBlocks);
+  if (this->HasBlocks)
+  {
+    const std::vector<vtkIdType> all = ranks.All({ points });
+    const auto used = std::count_if(all.begin(), all.end(), [](vtkIdType n) { return n > 0; });
+    this->RefusesBlocks = used > 1;
+    if (this->RefusesBlocks)
+    {
+      this->ReportProblem(cartan::DescribeBlocksOnRanks(static_cast<int>(used)), true);
+    }
+  }
+}
+
+vtkTypeBool vtkSurfaceFilter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    if (this->RefusesBlocks)
+    {
+      this->EmptyOutputs();
+      return 1;
+    }
+    // Blocks of one rank concern no other.
+    vtkMultiProcessController* controller = cartan::RankGroup::ControllerOf(this);
+    if (controller && !this->HasBlocks && !this->SupportsPieces())
+    {
+      return this->RunOnFirstRank(
+        request, inputVector, outputVector, cartan::RankGroup(controller));
+    }
+  }
+  return this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+int vtkSurfaceFilter::RunOnFirstRank(vtkInformation* request, vtkInformationVector** inputVector,
+  vtkInformationVector* outputVector, const cartan::RankGroup& ranks)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  this->SetErrorCode(vtkErrorCode::NoError);
+  this->ForgetResults();
+  cartan::GatheredRun gathered(ranks, inputVector, this->GetNumberOfInputPorts());
+  std::string warning;
+  const auto end = [&](const cartan::RunOutcome& outcome)
+  {
+    this->EmptyOutputs();
+    this->ForgetResults();
+    request->Remove(Pipeline::CONTINUE_EXECUTING());
+    if (!outcome.Problem.empty())
+    {
+      this->ReportProblem(outcome.Problem, outcome.IsCollective);
+    }
+    this->FollowFirstRank(request, inputVector, true);
+    return 1;
+  };
+  cartan::RunOutcome outcome = cartan::RunGuarded(
+    [&]
+    {
+      cartan::StopTogether(this, ranks);
+      warning = gathered.Gather(this->GatherLimit);
+    });
+  if (!outcome.IsSuccess())
+  {
+    return end(outcome);
+  }
+  if (ranks.IsFirst())
+  {
+    if (!warning.empty() && !this->HasWarnedOfGathering)
+    {
+      vtkWarningMacro(<< warning);
+      this->HasWarnedOfGathering = true;
+    }
+    this->Numbering = gathered.Numbering();
+    this->Superclass::ProcessRequest(request, gathered.Inputs(), outputVector);
+    this->Numbering.clear();
+  }
+  const std::vector<vtkIdType> all = ranks.All({ static_cast<vtkIdType>(this->GetErrorCode()),
+    request->Has(Pipeline::CONTINUE_EXECUTING()) ? 1 : 0 });
+  if (!ranks.IsFirst())
+  {
+    this->SetErrorCode(static_cast<unsigned long>(all[0]));
+    request->Remove(Pipeline::CONTINUE_EXECUTING());
+    if (all[1])
+    {
+      request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
+    }
+    this->FollowFirstRank(request, inputVector, all[0] != 0);
+  }
+  outcome = cartan::RunGuarded(
+    [&] { gathered.HandBack(outputVector, this->HandsBackPieces() && !all[1]); });
+  return outcome.IsSuccess() ? 1 : end(outcome);
+}
+
 int vtkSurfaceFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -87,10 +237,6 @@ int vtkSurfaceFilter::RequestData(
   const cartan::RunOutcome outcome = cartan::RunGuarded(
     [this, &run]
     {
-      if (!this->SupportsPieces())
-      {
-        cartan::RefuseDistributed(this);
-      }
       vtkPolyData* input = run.Input();
       if (input && input->GetNumberOfPoints() == 0 && input->GetNumberOfCells() == 0 &&
         this->AcceptsEmptyInput())
@@ -117,12 +263,7 @@ int vtkSurfaceFilter::RequestData(
   }
   if (!outcome.Problem.empty())
   {
-    this->SetErrorCode(vtkErrorCode::UserError);
-    vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-    if (!outcome.IsCollective || !controller || controller->GetLocalProcessId() == 0)
-    {
-      vtkErrorMacro(<< outcome.Problem);
-    }
+    this->ReportProblem(outcome.Problem, outcome.IsCollective);
   }
   return 1;
 }

@@ -16,8 +16,13 @@
  * - Warnings, with each update that they concern: cells that use a point twice
  *   (ignored), cells without area, and border edges that coincide, where the
  *   surface looks closed and is not (vtkPrepareSurface merges their points).
- * - A surface that is distributed over several ranks is refused, unless the
- *   concrete filter supports pieces.
+ * - A surface in pieces on several ranks is joined on the first, which runs the filter; each
+ *   rank gets its piece of an output that has the input's points and cells, with its own ghost
+ *   cells. Other outputs are whole on the first rank. Points are joined by their global ids
+ *   (the attribute), or else where points of several pieces are in the same place. There is one
+ *   warning of that, and beyond GatherLimit an error. A filter that supports pieces does
+ *   not join them.
+ * - A problem on one rank ends the update on all of them, with one message of the first.
  * - What is expensive is kept from one update to the next, found by the contents
  *   that it was made from. The output never depends on earlier updates, inputs
  *   or settings. Surfaces with equal cells share one mesh, also among filters.
@@ -30,11 +35,13 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For what is kept
+#include <string> // For messages
 
 namespace cartan
 {
 class FilterRun;
 class KeptResults;
+class RankGroup;
 }
 
 class VTKCARTAN_EXPORT vtkSurfaceFilter : public vtkPolyDataAlgorithm
@@ -52,8 +59,10 @@ public:
    * does by default, and to carry the results back to the points and cells of the
    * input, as vtkRestoreSurface does. Surfaces that belong together are prepared
    * alike: as the reference needs it, or else the first. Off by default, and an error
-   * in vtkDiscreteForms, vtkFrameReconstruction, vtkPrepareSurface and
-   * vtkRestoreSurface.
+   * in vtkBoundaryLoops, vtkCarryAlong, vtkCoatingTransfer, vtkCurveDeformation,
+   * vtkDiscreteForms, vtkFrameReconstruction, vtkLandmarkHandles, vtkMeshMerge,
+   * vtkPrepareSurface, vtkRestoreSurface and vtkSpectralWatermark, and where
+   * vtkVolumeChange computes rates.
    */
   vtkSetMacro(PrepareInput, bool);
   vtkGetMacro(PrepareInput, bool);
@@ -71,6 +80,15 @@ public:
   vtkGetMacro(KeptMemoryLimit, int);
   ///@}
 
+  ///@{
+  /**
+   * How many points a surface in pieces on several ranks may have to be joined on the first
+   * rank, >= 0: the sum over all ranks and inputs. One with more is an error. Default: 2000000.
+   */
+  vtkSetClampMacro(GatherLimit, vtkIdType, 0, VTK_ID_MAX);
+  vtkGetMacro(GatherLimit, vtkIdType);
+  ///@}
+
   /**
    * How much memory this filter keeps, in megabytes (10^6 bytes). A mesh that
    * several filters share counts in each of them.
@@ -81,6 +99,9 @@ public:
    * Releases the kept results.
    */
   void ReleaseKeptMemory();
+
+  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
 
 protected:
   vtkSurfaceFilter();
@@ -98,10 +119,26 @@ protected:
   virtual void ForgetResults() {}
 
   /**
-   * Whether the filter supports a surface that is distributed over ranks.
-   * Default: no.
+   * Whether Execute() runs on each rank with its own piece of a surface. What it does there
+   * with the other ranks it does on all of them, see cartan::RankGroup. Default: no.
    */
   virtual bool SupportsPieces() const { return false; }
+
+  /**
+   * Whether an output that has the points and cells of a joined input is handed back in
+   * pieces. Default: yes.
+   */
+  virtual bool HandsBackPieces() const { return true; }
+
+  /**
+   * Called instead of RequestData() on the other ranks while the first one runs the filter, for
+   * what decides what is asked of the input next: the request tells whether that
+   * continues (CONTINUE_EXECUTING). On all ranks, with `hasEnded`, where the update has ended.
+   */
+  virtual void FollowFirstRank(vtkInformation* vtkNotUsed(request),
+    vtkInformationVector** vtkNotUsed(inputVector), bool vtkNotUsed(hasEnded))
+  {
+  }
 
   /**
    * Whether an input without points and cells is passed on without a warning.
@@ -146,9 +183,19 @@ protected:
 
 private:
   void EmptyOutputs();
+  void ReportProblem(const std::string& problem, bool isCollective);
+  /// Before each update: whether the ranks have blocks of composite data.
+  void LookForBlocks();
+  int RunOnFirstRank(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector, const cartan::RankGroup& ranks);
 
   std::unique_ptr<cartan::KeptResults> Kept;
+  std::string Numbering; // what ids in messages mean while a joined surface is at work
+  vtkIdType GatherLimit = 2000000;
   int KeptMemoryLimit = 2000;
+  bool HasBlocks = false;
+  bool RefusesBlocks = false;
+  bool HasWarnedOfGathering = false;
   bool PrepareInput = false;
 };
 

@@ -3,6 +3,7 @@
 
 #include "Bridge/FilterRun.h"
 #include "Bridge/KeyFrameMorph.h"
+#include "Bridge/KeyFrameSteps.h"
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/LinearMorph.h"
@@ -47,14 +48,10 @@ std::pair<int, int> WindowAt(double t, const std::vector<double>& parameters)
 }
 }
 
-class vtkSurfaceMorph::Internals
+class vtkSurfaceMorph::Internals : public cartan::KeyFrameSteps
 {
 public:
-  /// Of one input: its time steps, and those of the surfaces there that are in use.
-  std::vector<double> Times;
-  std::map<int, vtkSmartPointer<vtkPolyData>> Steps;
   vtkMTimeType InputTime = 0;
-  int Requested = 0;
 
   /// The last composite input: the executive shows only its blocks to RequestData.
   vtkWeakPointer<vtkCompositeDataSet> Composite;
@@ -97,32 +94,6 @@ public:
     }
     steps.push_back(this->ToTime(1.0));
     return steps;
-  }
-
-  /// The first time step that is not after the one before it; 0 if all are.
-  std::size_t FirstOutOfOrder() const
-  {
-    for (std::size_t k = 1; k < this->Times.size(); ++k)
-    {
-      if (!(this->Times[k] > this->Times[k - 1]))
-      {
-        return k;
-      }
-    }
-    return 0;
-  }
-
-  /// The first time step of the window that is not there; -1 if none.
-  int NextMissing(const std::pair<int, int>& window) const
-  {
-    for (int k = window.first; k < window.second; ++k)
-    {
-      if (!this->Steps.count(k))
-      {
-        return k;
-      }
-    }
-    return -1;
   }
 };
 
@@ -287,6 +258,24 @@ int vtkSurfaceMorph::RequestData(
   return result;
 }
 
+void vtkSurfaceMorph::FollowFirstRank(
+  vtkInformation* request, vtkInformationVector** inputVector, bool hasEnded)
+{
+  Internals& state = *this->State;
+  if (hasEnded)
+  {
+    state.Steps.clear();
+  }
+  else if (!state.Times.empty())
+  {
+    state.TakeStep(vtkPolyData::GetData(inputVector[0]));
+    if (!request->Has(Pipeline::CONTINUE_EXECUTING()))
+    {
+      state.KeepSteps(this->Window(this->RequestedParameter(this->GetOutputInformation(0))));
+    }
+  }
+}
+
 void vtkSurfaceMorph::RequireKeyFrames(cartan::FilterRun& run) const
 {
   const Internals& state = *this->State;
@@ -319,19 +308,13 @@ bool vtkSurfaceMorph::CollectKeyFrames(cartan::FilterRun& run, double t)
   const bool hasTimes = !state.Times.empty();
   if (hasTimes)
   {
-    auto step = vtkSmartPointer<vtkPolyData>::New();
-    step->ShallowCopy(run.Input());
-    state.Steps[state.Requested] = step;
+    state.TakeStep(run.Input());
     if (state.NextMissing(window) >= 0)
     {
       run.Request()->Set(Pipeline::CONTINUE_EXECUTING(), 1);
       return false;
     }
-    for (auto entry = state.Steps.begin(); entry != state.Steps.end();)
-    {
-      const bool isUsed = entry->first >= window.first && entry->first < window.second;
-      entry = isUsed ? std::next(entry) : state.Steps.erase(entry);
-    }
+    state.KeepSteps(window);
   }
   state.Keys = {};
   state.Keys.Parameters.assign(

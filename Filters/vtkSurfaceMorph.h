@@ -305,6 +305,8 @@ protected:
   void Execute(cartan::FilterRun& run) override;
   void ForgetResults() override;
   bool AcceptsEmptyInput() const override;
+  void FollowFirstRank(
+    vtkInformation* request, vtkInformationVector** inputVector, bool hasEnded) override;
 
 private:
   class Internals;

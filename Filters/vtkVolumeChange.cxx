@@ -62,6 +62,17 @@ int vtkVolumeChange::RequestData(
   return result;
 }
 
+void vtkVolumeChange::FollowFirstRank(
+  vtkInformation* request, vtkInformationVector** inputVector, bool hasEnded)
+{
+  if (!hasEnded && request->Has(vtkStreamingDemandDrivenPipeline::CONTINUE_EXECUTING()))
+  {
+    this->Steps->Take(vtkPolyData::GetData(inputVector[0]));
+    return;
+  }
+  this->Steps->Clear();
+}
+
 void vtkVolumeChange::UsePreparedInput(cartan::FilterRun& run) const
 {
   if (this->ComputeRates)

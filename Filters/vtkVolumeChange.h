@@ -183,6 +183,8 @@ protected:
   void UsePreparedInput(cartan::FilterRun& run) const override;
   void Compare(const cartan::SurfacePair& pair, cartan::FilterRun& run) override;
   void ForgetResults() override { this->Results.clear(); }
+  void FollowFirstRank(
+    vtkInformation* request, vtkInformationVector** inputVector, bool hasEnded) override;
 
 private:
   double GetResult(const std::string& name) const;

@@ -3,8 +3,8 @@
 """Refuses advice in the messages of the filters that no test follows.
 
 A text of the sources advises if a clause of it begins with one of the VERBS. A test that does
-what such a text says cites its words as Advice("...") in Testing/Cxx or Testing/Distributed.
-Prints one line for each text without a test and exits with 1 if there is any.
+what such a text says cites its words as Advice("...") in a folder of Testing: Cxx,
+Distributed or Mpi. Prints one line for each text without a test and exits with 1 if there is any.
 """
 import pathlib
 import re
@@ -56,7 +56,7 @@ def sources():
 
 
 def main():
-    phrases = {joined(literals) for folder in ("Cxx", "Distributed")
+    phrases = {joined(literals) for folder in ("Cxx", "Distributed", "Mpi")
                for path in (ROOT / "Testing" / folder).glob("*.cxx")
                for literals in FOLLOWED.findall(path.read_text(encoding="utf-8"))}
     phrases.update(EXEMPT)

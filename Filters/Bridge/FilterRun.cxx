@@ -20,16 +20,6 @@ namespace cartan
 {
 namespace
 {
-/// What all ranks found out together: one of them tells.
-class CollectiveError : public Error
-{
-public:
-  explicit CollectiveError(const std::string& message)
-    : Error(ErrorCode::BadInput, message)
-  {
-  }
-};
-
 struct KeptSurface
 {
   std::shared_ptr<const Surface> TheSurface;
@@ -49,15 +39,20 @@ struct PreparedInput
 /// microseconds for each element.
 constexpr int Block = 1 << 15;
 
+bool IsToStop(vtkAlgorithm* algorithm)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+  return algorithm->CheckAbort(); // upstream's request to stop counts too
+#else
+  return algorithm->GetAbortExecute() != 0;
+#endif
+}
+
 /// Tells the filter's observers, and whether to go on.
 bool ReportProgress(vtkAlgorithm* algorithm, double fraction)
 {
   algorithm->UpdateProgress(fraction);
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
-  return !algorithm->CheckAbort(); // upstream's request to stop counts too
-#else
-  return algorithm->GetAbortExecute() == 0;
-#endif
+  return !IsToStop(algorithm);
 }
 
 ExecutionContext MakeContext(vtkAlgorithm* algorithm)
@@ -235,7 +230,8 @@ RunOutcome RunGuarded(const std::function<void()>& body)
   }
   catch (const CollectiveError& error)
   {
-    outcome.Problem = error.what();
+    outcome.IsAborted = error.GetCode() == ErrorCode::Aborted;
+    outcome.Problem = outcome.IsAborted ? "" : error.what();
     outcome.IsCollective = true;
   }
   catch (const Error& error)
@@ -252,6 +248,18 @@ RunOutcome RunGuarded(const std::function<void()>& body)
     outcome.Problem = error.what();
   }
   return outcome;
+}
+
+void StopTogether(vtkAlgorithm* filter, const RankGroup& ranks)
+{
+  ranks.Agree(IsToStop(filter) ? "Stopped on request." : "", ErrorCode::Aborted);
+}
+
+std::string DescribeBlocksOnRanks(int numberOfRanks)
+{
+  return "Composite surfaces are on " + std::to_string(numberOfRanks) +
+    " ranks, and blocks are not gathered: make one surface of them (Merge Blocks, then Extract "
+    "Surface) first.";
 }
 
 void RefuseDistributed(vtkAlgorithm* filter)

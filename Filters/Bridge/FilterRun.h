@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Bridge/KeptResults.h"
+#include "Bridge/RankGroup.h"
 #include "Bridge/SurfaceReader.h"
 
 #include "vtkSmartPointer.h"
@@ -94,6 +95,12 @@ struct RunOutcome
 /// Runs `body` and turns every exception into an outcome: one that left
 /// RequestData would take ParaView down.
 RunOutcome RunGuarded(const std::function<void()>& body);
+
+/// Throws on all ranks if the filter is to stop on one of them.
+void StopTogether(vtkAlgorithm* filter, const RankGroup& ranks);
+
+/// That composite data are on several ranks, and what to do: a sentence.
+std::string DescribeBlocksOnRanks(int numberOfRanks);
 
 /// Throws CollectiveError when more than one rank has a part of the surface on
 /// port 0.

@@ -1,44 +1,49 @@
-"""On two ranks: a surface in pieces is refused, by one message of one rank; one on a single rank
-is deformed."""
+"""On two ranks: a surface in pieces is gathered, deformed and handed back in pieces; what cannot be
+gathered is refused by one message of one rank."""
 from paraview import simple
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
-from plugin_testing import check, load_plugin, mark_ends, open_bar, refresh
+from plugin_testing import check, check_close, load_plugin, mark_ends, open_bar, refresh
 
 controller = vtkMultiProcessController.GetGlobalController()
 check(controller.GetNumberOfProcesses() == 2, "this test wants two ranks")
 load_plugin()
 
-refused = 0
 
-
-def check_refused(proxy):
-    """What the ranks print is counted outside, by RunOnRanks.py."""
-    global refused
+def points_of(proxy):
     proxy.UpdatePipeline()
-    refused += 1
-    check(proxy.GetDataInformation().GetNumberOfPoints() == 0, "the output is not empty")
+    return proxy.GetDataInformation().GetNumberOfPoints()
 
 
-# Each rank makes its piece of the sphere.
-sphere = simple.Sphere(ThetaResolution=32, PhiResolution=32)
-check_refused(simple.DiscreteForms(Input=sphere))
-marked = simple.MarkHandle(Input=sphere, RegionSource="All Points")
-check_refused(marked)
-check_refused(simple.CurvatureError(Input=sphere))
-surfaces = refused
-# Pieces of another kind.
-grid = simple.AppendDatasets(Input=[sphere])
-check_refused(simple.CarryAlong(Input=grid, Rest=sphere, Deformed=sphere))
-
-# The reader gives the whole bar to the first rank.
-bent = simple.RotationInvariantDeformation(Input=mark_ends(open_bar("MpiDistributed")))
+# The reader gives the whole bar to the first rank: nothing is gathered.
+marked = mark_ends(open_bar("MpiDistributed"))
+bent = simple.RotationInvariantDeformation(Input=marked)
 bent.Motion.Angle = 30
 refresh(bent)
 check(bent.NumberOfFreePoints > 100, "free points")
 check(bent.GetDataInformation().GetNumberOfPoints() == 354, "the bar")
+free = bent.NumberOfFreePoints
+bounds = bent.GetDataInformation().GetBounds()
 
-for count, text in ((surfaces, "The surface is distributed over 2 ranks"),
-                    (refused - surfaces, "The mesh is distributed over 2 ranks"),
-                    (refused, "gather it on one rank (Aggregate Dataset")):
+# The same in pieces.
+grid = simple.RedistributeDataSet(Input=marked)
+surface = simple.ExtractSurface(Input=grid)
+in_pieces = simple.RotationInvariantDeformation(Input=surface)
+in_pieces.Motion.Angle = 30
+refresh(in_pieces)
+check(in_pieces.NumberOfFreePoints == free, "free points of pieces")
+check(points_of(in_pieces) == points_of(surface) > 354, "the bar in pieces")
+for actual, expected in zip(in_pieces.GetDataInformation().GetBounds(), bounds):
+    check_close(actual, expected, "bounds")
+
+# Beyond the limit, and with pieces of another kind.
+in_pieces.GatherLimit = 300
+check(points_of(in_pieces) == 0, "the output is not empty")
+carried = simple.CarryAlong(Input=grid, Rest=marked, Deformed=bent)
+check(points_of(carried) == 0, "the output is not empty")
+
+for count, text in ((1, "it is gathered on the first, which works alone"),
+                    (1, "more than GatherLimit (300)"),
+                    (1, "The mesh is distributed over 2 ranks"),
+                    (1, "gather it on one rank (Aggregate Dataset")):
     print("expected %d times: %s" % (count, text), flush=True)
