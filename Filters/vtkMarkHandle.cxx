@@ -22,6 +22,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSelection.h"
+#include "vtkSelectionNode.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -43,6 +44,21 @@ void AddInside(
     const double value = values->GetValue(i);
     mask[i] |= insideOut ? value > 0.0 : value <= 0.0;
   }
+}
+
+// Whether ids are those of one rank, as where points are picked in a view.
+bool IsOfRanks(vtkSelection* selection)
+{
+  for (unsigned int n = 0; n < selection->GetNumberOfNodes(); ++n)
+  {
+    vtkInformation* properties = selection->GetNode(n)->GetProperties();
+    if (properties->Has(vtkSelectionNode::PROCESS_ID()) &&
+      properties->Get(vtkSelectionNode::PROCESS_ID()) >= 0)
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 // Returns what is odd about the surface that the region grows over, and the
@@ -345,6 +361,12 @@ void vtkMarkHandle::Execute(cartan::FilterRun& run)
   vtkSmartPointer<vtkDataObject> evaluated;
   if (selection && selection->GetNumberOfNodes() > 0 && this->UsesSelection())
   {
+    if (input != this->GetInputDataObject(0, 0) && IsOfRanks(selection))
+    {
+      throw cartan::Error(cartan::ErrorCode::BadInput,
+        "The selection names points of the pieces on each rank, and the pieces are gathered: mark "
+        "by a region function or by PointIds instead.");
+    }
     evaluated = cartan::EvaluateSelection(input, selection, this->SelectionExtractor, this);
   }
   const std::vector<Block> blocks = MakeBlocks(input, evaluated, run.OutputObject());

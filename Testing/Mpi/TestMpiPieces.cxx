@@ -8,6 +8,7 @@
 #include "vtkDifferentialCoordinates.h"
 #include "vtkHandleMotion.h"
 #include "vtkLaplacianDeformation.h"
+#include "vtkMarkHandle.h"
 #include "vtkPoissonDeformation.h"
 #include "vtkRotationInvariantDeformation.h"
 #include "vtkShapePreservingDeformation.h"
@@ -19,6 +20,8 @@
 #include "vtkGenerateGlobalIds.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPolyDataNormals.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
 
 namespace
 {
@@ -372,6 +375,39 @@ TEST(Pieces, WithOtherInputsOnEachRankAreRefused)
   pieces::UpdateTogether(morph);
   EXPECT_TRUE(log->Errors.empty()) << log->Errors[0];
   EXPECT_GT(morph->GetOutput()->GetNumberOfPoints(), 0);
+}
+
+TEST(Pieces, RefuseSelectionsOfOneRank)
+{
+  const auto bar = WithHandles(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 }));
+  vtkNew<vtkIdTypeArray> ids;
+  ids->InsertNextValue(3);
+  vtkNew<vtkSelectionNode> node;
+  node->SetFieldType(vtkSelectionNode::POINT);
+  node->SetContentType(vtkSelectionNode::INDICES);
+  node->SetSelectionList(ids);
+  node->GetProperties()->Set(vtkSelectionNode::PROCESS_ID(), Size() - 1);
+  vtkNew<vtkSelection> selection;
+  selection->AddNode(node);
+  vtkNew<vtkMarkHandle> mark;
+  const auto log = vtktest::Observe(mark);
+  mark->SetHandleArrayName("Picked");
+  mark->SetInputData(pieces::MyPieceOf(bar));
+  mark->SetSelectionData(selection);
+  pieces::UpdateTogether(mark);
+  pieces::ExpectOneMessage(log->Errors,
+    { "names points of the pieces", Advice("mark by a region function or by PointIds instead.") });
+  log->Clear();
+  mark->SetSelectionData(nullptr);
+  mark->SetPointId(0, 3); // of the whole
+  pieces::UpdateTogether(mark);
+  EXPECT_TRUE(log->Errors.empty()) << log->Errors[0];
+  auto* marked = vtkPolyData::SafeDownCast(mark->GetOutputDataObject(0));
+  vtkDataArray* id = marked->GetPointData()->GetArray("Id");
+  for (vtkIdType v = 0; v < marked->GetNumberOfPoints(); ++v)
+  {
+    EXPECT_EQ(marked->GetPointData()->GetArray("Picked")->GetTuple1(v), id->GetTuple1(v) == 3.0);
+  }
 }
 
 TEST(Pieces, StopTogether)
