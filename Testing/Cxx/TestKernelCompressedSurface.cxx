@@ -158,6 +158,13 @@ TEST(ConnectivityCoder, TakesNextToNothingOfRegularSurfaces)
     static_cast<std::size_t>(torus.NumberOfVertices()) / 8);
 }
 
+TEST(ConnectivityCoder, RefusesDistancesThatOverflow)
+{
+  // A code of 48 triangles that joins an edge 1 - 2^31 edges back.
+  const std::vector<unsigned char> bytes{ 0x5b, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+  EXPECT_THROW(cartan::DecodeTriangles(bytes.data(), bytes.size(), 48, 24), cartan::Error);
+}
+
 TEST(ConnectivityCoder, RefusesAnotherOrder)
 {
   const TriangleMesh mesh = shapes::MakeMesh(Mixed());

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 namespace cartan
 {
@@ -189,18 +190,19 @@ private:
       edge = isAfter ? front.After(edge) : front.Before(edge);
     }
     this->Last = 3;
-    return Checked(front, gate,
-      front.Size() - this->Integers.Code(this->Lengths, this->Sign, front.Size() - junction));
+    const std::int64_t back =
+      this->Integers.Code(this->Lengths, this->Sign, front.Size() - junction);
+    return Checked(front, gate, front.Size() - back);
   }
 
-  static int Checked(const CutBorder& front, int gate, int junction)
+  static int Checked(const CutBorder& front, int gate, std::int64_t junction)
   {
     if (junction < 0 || junction >= front.Size() || junction == gate ||
       front.Edges[junction].Is == CutBorder::State::Closed)
     {
       throw Error(ErrorCode::BadInput, "the connectivity cannot be decoded");
     }
-    return junction;
+    return static_cast<int>(junction);
   }
 
   static int StepsTo(
