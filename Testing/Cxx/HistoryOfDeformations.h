@@ -10,6 +10,7 @@
 #include "vtkLaplacianDeformation.h"
 #include "vtkMultiresolutionDeformation.h"
 #include "vtkPoissonDeformation.h"
+#include "vtkPyramidDeformation.h"
 #include "vtkRotationInvariantDeformation.h"
 #include "vtkShapePreservingDeformation.h"
 #include "vtkSimilarityDeformation.h"
@@ -106,6 +107,17 @@ inline Subject AsRigidAsPossible()
       Number<Filter>(&Filter::SetBending, { 0.1, 0.0, 1.0 }),
       Number<Filter>(&Filter::SetTolerance, { 0.0, 0.5 }),
       Switch<Filter>(&Filter::SetGenerateRigidityEnergy) }));
+}
+
+inline Subject Pyramid()
+{
+  using Filter = vtkPyramidDeformation;
+  return Make<Filter>("Pyramid",
+    DeformationChoices<Filter>({ // PREVIOUS_RESULT depends on the way by its definition.
+      Of<Filter>(3, [](Filter* f, int value) { f->SetInitialGuess(value ? value + 1 : 0); }),
+      Of<Filter>(2, [](Filter* f, int value) { f->SetMaximumIterations(1 + 3 * value); }),
+      Number<Filter>(&Filter::SetTolerance, { 0.0, 0.5 }),
+      Switch<Filter>(&Filter::SetGeneratePyramidEnergy) }));
 }
 
 inline Subject Similarity()
@@ -219,6 +231,7 @@ inline std::vector<Subject> DeformationSubjects()
       DeformationChoices<Multiresolution>({ Of<Multiresolution>(
         3, [](Multiresolution* f, int value) { f->SetSmoothness(1 + value); }) })),
     AsRigidAsPossible(),
+    Pyramid(),
     Volumetric(),
     Curve(),
     ExampleBased(),

@@ -355,7 +355,8 @@ std::optional<Finding> CheckHistory(const Case& original, const Outcome& first, 
 bool HasNoMemory(const Case& of)
 {
   return of.Get("TabulateTurns", 0.0) == 0.0 && of.Get("WarmStart", 0.0) == 0.0 &&
-    (of.Filter != "AsRigidAsPossibleDeformation" || of.Get("InitialGuess", 3.0) != 1.0);
+    ((of.Filter != "AsRigidAsPossibleDeformation" && of.Filter != "PyramidDeformation") ||
+      of.Get("InitialGuess", 3.0) != 1.0);
 }
 }
 

@@ -113,7 +113,9 @@ bool IsExactForRigid(const Case& of)
     return false;
   }
   // The first guess is the rest shape; rotations are left out, or linearized.
-  return !(of.Filter == "AsRigidAsPossibleDeformation" && of.Get("InitialGuess", 3.0) <= 0.0) &&
+  const bool iterates =
+    of.Filter == "AsRigidAsPossibleDeformation" || of.Filter == "PyramidDeformation";
+  return !(iterates && of.Get("InitialGuess", 3.0) <= 0.0) &&
     !(of.Filter == "LaplacianDeformation" && of.Get("Rotations", 1.0) != 1.0);
 }
 

@@ -25,6 +25,7 @@
 #include "vtkMultiresolutionDeformation.h"
 #include "vtkPoissonDeformation.h"
 #include "vtkPrepareSurface.h"
+#include "vtkPyramidDeformation.h"
 #include "vtkRestoreSurface.h"
 #include "vtkRotationInvariantDeformation.h"
 #include "vtkShapePreservingDeformation.h"
@@ -79,6 +80,16 @@ Parameters RigidParameters()
       Make("MaximumIterations", &Class::SetMaximumIterations, Integer(0, 12)),
       Make("Tolerance", &Class::SetTolerance, Real(0.0, 1e-3)),
       Make("GenerateRigidityEnergy", &Class::SetGenerateRigidityEnergy, Flag()) });
+}
+
+Parameters PyramidParameters()
+{
+  using Class = vtkPyramidDeformation;
+  return With(DeformationParameters(),
+    { Make("InitialGuess", &Class::SetInitialGuess, Integer(0, 3)),
+      Make("MaximumIterations", &Class::SetMaximumIterations, Integer(0, 40)),
+      Make("Tolerance", &Class::SetTolerance, Real(0.0, 1e-3)),
+      Make("GeneratePyramidEnergy", &Class::SetGeneratePyramidEnergy, Flag()) });
 }
 
 Parameters SimilarityParameters()
@@ -289,6 +300,7 @@ const std::map<std::string, Entry>& Entries()
       MakeEntry<vtkPoissonDeformation>(With(FrameParameters(),
         { Make("Propagation", &vtkPoissonDeformation::SetPropagation, Integer(0, 1)) })) },
     { "PrepareSurface", MakeEntry<vtkPrepareSurface>(PrepareParameters()) },
+    { "PyramidDeformation", MakeEntry<vtkPyramidDeformation>(PyramidParameters()) },
     { "RestoreSurface", MakeEntry<vtkRestoreSurface>({}) },
     { "RotationInvariantDeformation",
       MakeEntry<vtkRotationInvariantDeformation>(With(FrameParameters(),

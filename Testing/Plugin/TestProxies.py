@@ -14,6 +14,7 @@ FILTERS = {
     "LeastSquaresMesh", "HighPassQuantization", "SpectralWatermark",
     "BoundaryLoops", "MeshMerge", "CoatingTransfer", "LandmarkHandles", "CarryAlong",
     "VolumetricDeformation", "CurveDeformation", "ExampleBasedDeformation",
+    "PyramidDeformation",
 }
 MOTIONS = ["Axis and Angle", "Box", "Matrix"]
 

@@ -5,8 +5,6 @@
 #include "Algebra/ClosestRotation.h"
 #include "Algebra/Rotation.h"
 #include "Deformation/JoinedVertices.h"
-#include "Deformation/RotationInvariantDeformer.h"
-#include "Deformation/ShapePreservingDeformer.h"
 #include "Mesh/Geometry.h"
 
 #include <cmath>
@@ -32,18 +30,8 @@ AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, Rigi
   , GuessKind(guess)
 {
   HandleProblem ofGuess = this->Problem;
-  ofGuess.Weights = ofGuess.PositionWeights;
   ofGuess.ClampWeights = energy != RigidityEnergy::SpokesAndRims;
-  if (guess == InitialGuess::RotationInvariant)
-  {
-    this->Guess =
-      std::make_unique<RotationInvariantDeformer>(ofGuess, backend, context.Part(0.0, 0.9));
-  }
-  else
-  {
-    this->Guess =
-      std::make_unique<ShapePreservingDeformer>(ofGuess, backend, context.Part(0.0, 0.9));
-  }
+  this->Guess = MakeInitialGuess(std::move(ofGuess), guess, backend, context.Part(0.0, 0.9));
   this->System = this->Guess->GetPositionSystem();
   this->MovingHandles = MovingHandleOfVertices(this->Problem);
   this->Cells = RigidCells(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Deformation/FrameDeformer.h"
+#include "Deformation/InitialGuess.h"
 #include "Deformation/RigidCells.h"
 
 #include <memory>
@@ -14,14 +14,6 @@ enum class RigidityEnergy
   Spokes,           ///< Sorkine and Alexa 2007
   SpokesAndRims,    ///< Chao et al. 2010
   SmoothedRotations ///< Levi and Gotsman 2015
-};
-
-enum class InitialGuess
-{
-  RestShape,         ///< only the handles moved
-  PreviousResult,    ///< that of the last motion; of the first, ShapePreserving
-  RotationInvariant, ///< RotationInvariantDeformer
-  ShapePreserving    ///< ShapePreservingDeformer, which knows full turns
 };
 
 /// Deformation that leaves the neighborhood of each vertex as rigid as the
