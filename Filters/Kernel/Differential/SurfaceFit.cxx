@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/SurfaceFit.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -37,6 +36,98 @@ constexpr double CubicShare = 0.1;
 /// How many more points than parameters a fit must have for its residuals to
 /// tell anything.
 constexpr double LeastFreedom = 1.0;
+
+/// The Cholesky factor of the normal equations of N monomials. There are two for each vertex:
+/// loops of a length that the compiler knows take a third of the time of Eigen's, which are made
+/// for large matrices.
+template <int N>
+class MonomialFactor
+{
+public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+
+  /// Adds m m^T to the lower triangle of a sum.
+  static void AddSquare(const Vector& m, Matrix& sum)
+  {
+    for (int j = 0; j < N; ++j)
+    {
+      for (int i = j; i < N; ++i)
+      {
+        sum(i, j) += m[i] * m[j];
+      }
+    }
+  }
+
+  /// Of a matrix whose lower triangle is read. Not a number where it is not positive.
+  explicit MonomialFactor(const Matrix& matrix)
+    : Lower(matrix)
+  {
+    for (int j = 0; j < N; ++j)
+    {
+      for (int k = 0; k < j; ++k)
+      {
+        for (int i = j; i < N; ++i)
+        {
+          this->Lower(i, j) -= this->Lower(i, k) * this->Lower(j, k);
+        }
+      }
+      const double pivot = std::sqrt(this->Lower(j, j));
+      this->Inverse[j] = 1.0 / pivot;
+      this->Lower(j, j) = pivot;
+      for (int i = j + 1; i < N; ++i)
+      {
+        this->Lower(i, j) *= this->Inverse[j];
+      }
+    }
+  }
+
+  /// The squares of L's diagonal.
+  Vector Pivots() const { return this->Lower.diagonal().cwiseAbs2(); }
+
+  Vector Solve(Vector values) const
+  {
+    for (int j = 0; j < N; ++j)
+    {
+      values[j] *= this->Inverse[j];
+      for (int i = j + 1; i < N; ++i)
+      {
+        values[i] -= this->Lower(i, j) * values[j];
+      }
+    }
+    for (int j = N - 1; j >= 0; --j)
+    {
+      for (int i = j + 1; i < N; ++i)
+      {
+        values[j] -= this->Lower(i, j) * values[i];
+      }
+      values[j] *= this->Inverse[j];
+    }
+    return values;
+  }
+
+  Matrix InverseOfLower() const
+  {
+    Matrix inverse = Matrix::Zero();
+    for (int c = 0; c < N; ++c)
+    {
+      inverse(c, c) = this->Inverse[c];
+      for (int j = c; j < N; ++j)
+      {
+        inverse(j, c) = j == c ? this->Inverse[c] : inverse(j, c) * this->Inverse[j];
+        for (int i = j + 1; i < N; ++i)
+        {
+          inverse(i, c) -= this->Lower(i, j) * inverse(j, c);
+        }
+      }
+    }
+    return inverse;
+  }
+
+private:
+  Matrix Lower;
+  Vector Inverse; ///< of the diagonal
+};
 
 /// Axes in the plane normal to Normal along which the coordinates of the points
 /// are uncorrelated, and the lengths that are units along them.
@@ -261,15 +352,14 @@ double Determination(const Neighborhood& neighborhood, const Eigen::Vector3d& no
       const double y = neighborhood.Offset(i).dot(axes.B) / axes.UnitB;
       Vector5 monomials;
       monomials << x, y, 0.5 * x * x, x * y, 0.5 * y * y;
-      matrix += monomials.lazyProduct(monomials.transpose());
+      MonomialFactor<5>::AddSquare(monomials, matrix);
     }
   }
   matrix.diagonal().array() += TinyRidge * neighborhood.Size();
   // The squares of the factor's diagonal are what earlier columns leave over.
-  const Eigen::LLT<Matrix5> factor(matrix);
-  const Eigen::Array3d left = factor.matrixLLT().diagonal().tail<3>().array().square();
-  const double smallest = (left / matrix.diagonal().tail<3>().array()).minCoeff();
-  return factor.info() == Eigen::Success ? smallest : 0.0;
+  const Vector5 left = MonomialFactor<5>(matrix).Pivots();
+  const double smallest = (left.tail<3>().array() / matrix.diagonal().tail<3>().array()).minCoeff();
+  return left.allFinite() ? smallest : 0.0;
 }
 
 bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
@@ -287,7 +377,7 @@ bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   {
     const Vector9 monomials = Monomials(neighborhood.Offset(i), axes, earlier);
     const double height = neighborhood.Offset(i).dot(normal);
-    matrix += monomials.lazyProduct(monomials.transpose());
+    MonomialFactor<9>::AddSquare(monomials, matrix);
     rightHandSide += height * monomials;
     squaredHeights += height * height;
   }
@@ -298,15 +388,15 @@ bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
     3.0 * CubicRidge, 3.0 * CubicRidge, CubicRidge;
   ridge *= neighborhood.Size();
   matrix.diagonal() += ridge;
-  const Eigen::LLT<Matrix9> factor(matrix);
-  const Vector9 fit = factor.solve(rightHandSide);
+  const MonomialFactor<9> factor(matrix);
+  const Vector9 fit = factor.Solve(rightHandSide);
   if (earlier)
   {
     // |h - X x|^2 = h.h - x.b - x.R x for (X^T X + R) x = b = X^T h.
     const double squaredResiduals =
       squaredHeights - fit.dot(rightHandSide) - fit.cwiseAbs2().dot(ridge);
-    form.StandardError = axes.StandardError(
-      factor.matrixL().solve(Matrix9::Identity()), ridge, squaredResiduals, neighborhood.Size());
+    form.StandardError =
+      axes.StandardError(factor.InverseOfLower(), ridge, squaredResiduals, neighborhood.Size());
     form.Change = axes.Change(fit);
   }
   return axes.ToSecondForm(fit, form);
@@ -332,7 +422,7 @@ bool FitNormalCurvatures(const Neighborhood& neighborhood, const Eigen::Vector3d
     const Eigen::Vector3d& offset = neighborhood.Offset(i);
     const double weight = axes.UnitA * axes.UnitA / (offset.squaredNorm() + added);
     const Vector9 monomials = weight * Monomials(offset, axes, earlier);
-    matrix += monomials.lazyProduct(monomials.transpose());
+    MonomialFactor<9>::AddSquare(monomials, matrix);
     rightHandSide += weight * offset.dot(normal) * monomials;
   }
   // As in FitCubic the norms do not depend on the axes.
@@ -345,6 +435,6 @@ bool FitNormalCurvatures(const Neighborhood& neighborhood, const Eigen::Vector3d
     cubic;
   matrix.diagonal() += ridge;
   matrix.diagonal().array() += 0.01 * curvature;
-  return axes.ToSecondForm(matrix.llt().solve(rightHandSide), form);
+  return axes.ToSecondForm(MonomialFactor<9>(matrix).Solve(rightHandSide), form);
 }
 }
