@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Configures, builds and runs the benchmarks in build/benchmarks: similarity
 # editing, as-rigid-as-possible deformation, the methods of differential coordinates,
-# drags of large surfaces, sewing, morphs, spectra and compressed files, each with a table
+# drags of large surfaces and their set-up, sewing, morphs, spectra and compressed files, each with a table
 # of what was asked and what was measured, then the motions of rotation-invariant and shape-preserving editing by
 # Google Benchmark, with such a table at the end. Arguments are Google Benchmark's, for
 # example --benchmark_filter=104K. Takes about ten minutes and means something
@@ -37,6 +37,7 @@ build/benchmarks/bin/CartanBenchmarkSimilarity
 build/benchmarks/bin/CartanBenchmarkAsRigidAsPossible
 build/benchmarks/bin/CartanBenchmarkDifferential
 build/benchmarks/bin/CartanBenchmarkDrag
+build/benchmarks/bin/CartanBenchmarkSetUp
 OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkMerge
 build/benchmarks/bin/CartanBenchmarkMorph
 OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkSpectrum

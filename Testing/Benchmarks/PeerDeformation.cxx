@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PeerDeformation.h"
 
+#include "BenchmarkTools.h"
+
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_deformation.h>
@@ -20,6 +22,7 @@ public:
   std::unique_ptr<Deformation> Deformer;
   std::vector<Mesh::Vertex_index> Moving;
   std::vector<Eigen::Vector3d> Rest;
+  double PreprocessTime = 0.0;
 };
 
 PeerDeformation::PeerDeformation(
@@ -53,13 +56,20 @@ PeerDeformation::PeerDeformation(
       this->State->Rest.push_back(points.row(static_cast<Eigen::Index>(v.idx())).transpose());
     }
   }
+  const double start = benchmarks::WallTime();
   if (!this->State->Deformer->preprocess())
   {
     throw std::runtime_error("CGAL's preprocess() failed.");
   }
+  this->State->PreprocessTime = benchmarks::WallTime() - start;
 }
 
 PeerDeformation::~PeerDeformation() = default;
+
+double PeerDeformation::GetPreprocessTime() const
+{
+  return this->State->PreprocessTime;
+}
 
 void PeerDeformation::MoveHandle(const Eigen::Matrix3d& linear, const Eigen::Vector3d& translation)
 {

@@ -16,6 +16,9 @@ public:
     const std::vector<int>& handles);
   ~PeerDeformation();
 
+  /// Seconds that preprocess() took.
+  double GetPreprocessTime() const;
+
   /// The moving handle goes to x -> linear x + translation.
   void MoveHandle(const Eigen::Matrix3d& linear, const Eigen::Vector3d& translation);
 
