@@ -193,6 +193,7 @@ protected:
 
   void AddSettings(cartan::ContentKey& settings) const override;
   bool NeedsTransforms() const override { return this->GenerateShapeDistance; }
+  bool NeedsPositions() const override { return this->GenerateVolumeArrays; }
   void ForgetResults() override;
 
 private:

@@ -4,7 +4,6 @@
 #include "Bridge/MotionTable.h"
 #include "Bridge/Preparation.h"
 #include "Bridge/PreparedSurface.h"
-#include "Bridge/SurfaceWriter.h"
 #include "Bridge/TransformArrays.h"
 #include "Kernel/Algebra/ConstrainedSolver.h"
 #include "Kernel/Deformation/HandleCurve.h"
@@ -392,11 +391,10 @@ void vtkSurfaceDeformation::Deform(cartan::FilterRun& run)
     this->GenerateFrameChange || this->GenerateRotationVector || this->NeedsTransforms();
   fields.Rotations = this->GenerateRotationVector;
   fields.Normals = input->GetPointData()->GetNormals() || input->GetCellData()->GetNormals();
-  cartan::DeformAndCheck(*prepared, targets, fields, run, run.Context().Part(motion, 0.95));
+  cartan::DeformAndWrite(*prepared, targets, fields, this->NeedsPositions(), *surface, run,
+    run.Context().Part(motion, 0.95));
   this->State->Factorizations += deformer.GetNumberOfFactorizations() - factorizations;
 
-  run.Warn(
-    cartan::WriteSurface(*surface, prepared->Result.Positions, input, run.Output(), run.Context()));
   run.Warn(cartan::AddTransformArrays(
     prepared->Result, this->GenerateFrameChange, this->GenerateRotationVector, run.Output()));
   prepared->Method.Decorate(prepared->Result, run);

@@ -343,6 +343,11 @@ protected:
   virtual bool NeedsTransforms() const { return false; }
 
   /**
+   * Whether they need the positions in the precision of the computation.
+   */
+  virtual bool NeedsPositions() const { return false; }
+
+  /**
    * Where the progress of an update stands when the motion itself begins, in (0.1,
    * 0.9): a method that iterates leaves most of the way to the motion. Default:
    * 0.8.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Bridge/Preparation.h"
 
+#include "Bridge/SurfaceWriter.h"
+
 namespace cartan
 {
 namespace
@@ -28,6 +30,29 @@ void Configure(Preparation& prepared, FilterRun& run, const ExecutionContext& co
   }
 }
 
+namespace
+{
+/// Whether the surface is written: else its positions are in Result.
+bool DeformIntoOutput(Preparation& prepared, const HandleTargets& targets, const Surface& surface,
+  FilterRun& run, const ExecutionContext& context)
+{
+  DeformedSurface& result = prepared.Result;
+  const PositionRows rows = prepared.Method.Deformer->DeformInRows(targets, result, context);
+  run.Warn(prepared.Method.Deformer->GetWarning());
+  if (!rows ||
+    WriteSurfaceRows(
+      surface, rows, ShortMotion(prepared.Problem), run.Input(), run.Output(), run.Context()))
+  {
+    return static_cast<bool>(rows);
+  }
+  // What is odd about them is found as for others.
+  const int count = surface.Mesh->NumberOfVertices();
+  result.Positions.resize(count, 3);
+  result.FrameScale.setOnes(count);
+  rows(0, count, result.Positions.data());
+  return false;
+}
+
 void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
   const ComparedFields& fields, FilterRun& run, const ExecutionContext& context)
 {
@@ -35,7 +60,6 @@ void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
   const double part = prepared.Moved ? 0.5 : 1.0;
   deformer.Deform(targets, fields.Transforms, prepared.Result, context.Part(0.0, part));
   run.Warn(deformer.GetWarning());
-  run.Warn(DescribeLostDigits(prepared.Problem, prepared.Result));
   if (prepared.Moved)
   {
     Preparation& moved = *prepared.Moved;
@@ -46,5 +70,24 @@ void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
     difference.IsOfSlivers = !HaveSameTriangles(*prepared.Problem.Mesh, *moved.Problem.Mesh);
     run.Warn(difference.Describe());
   }
+}
+}
+
+void DeformAndWrite(Preparation& prepared, const HandleTargets& targets,
+  const ComparedFields& fields, bool keepsPositions, const Surface& surface, FilterRun& run,
+  const ExecutionContext& context)
+{
+  const bool isAlone = !keepsPositions && !fields.Transforms && !fields.Normals && !prepared.Moved;
+  if (isAlone && DeformIntoOutput(prepared, targets, surface, run, context))
+  {
+    return;
+  }
+  if (!isAlone)
+  {
+    DeformAndCheck(prepared, targets, fields, run, context);
+  }
+  run.Warn(DescribeLostDigits(prepared.Problem, prepared.Result));
+  run.Warn(
+    WriteSurface(surface, prepared.Result.Positions, run.Input(), run.Output(), run.Context()));
 }
 }

@@ -27,8 +27,11 @@ struct Preparation
 /// Hands over what may change from one motion to the next.
 void Configure(Preparation& prepared, FilterRun& run, const ExecutionContext& context);
 
-/// Deforms, with transforms where those are compared; with Moved a second time. Warns of what is
-/// odd, and of what differs.
-void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
-  const ComparedFields& fields, FilterRun& run, const ExecutionContext& context);
+/// Deforms, with transforms where those are compared; with Moved a second time. Writes `surface`
+/// as it is then (WriteSurface) to the output. Warns of what is odd, and of what differs. The
+/// positions are in Result only with `keepsPositions`: else they may go from the kernel's fields
+/// to the output in one pass over memory.
+void DeformAndWrite(Preparation& prepared, const HandleTargets& targets,
+  const ComparedFields& fields, bool keepsPositions, const Surface& surface, FilterRun& run,
+  const ExecutionContext& context);
 }

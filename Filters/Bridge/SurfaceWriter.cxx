@@ -17,67 +17,116 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 namespace cartan
 {
 namespace
 {
-/// From the kernel to the output in one pass: the input's own coordinates where
-/// nothing moved (to the origin and back would cost them their last bit).
-/// Returns whether all are finite.
+/// From the kernel to the output, block by block: the input's own coordinates where nothing
+/// moved (to the origin and back would cost them their last bit).
 template <typename Array>
-bool WriteCoordinates(const Surface& surface, const Points& positions, vtkDataArray* input,
-  Array* output, const ExecutionContext& context)
+class CoordinateWriter
 {
+public:
   using Real = typename Array::ValueType;
-  auto* same = Array::FastDownCast(input);
-  const Real* from = same ? same->GetPointer(0) : nullptr;
-  Real* to = output->GetPointer(0);
-  const TriangleMesh& mesh = *surface.Mesh;
-  const Points& rest = *surface.Positions;
-  std::atomic<bool> isFinite{ true };
-  context.For(mesh.NumberOfVertices(),
-    [&](int begin, int end)
+
+  CoordinateWriter(const Surface& surface, vtkDataArray* input, Array* output)
+    : TheSurface(surface)
+    , Input(input)
+    , To(output->GetPointer(0))
+  {
+    auto* same = Array::FastDownCast(input);
+    this->From = same ? same->GetPointer(0) : nullptr;
+  }
+
+  /// Whether the vertices [begin, end), three numbers each in `positions`, are finite and have
+  /// moved by no more than `farthest` along each axis.
+  bool Write(int begin, int end, const double* positions, double farthest) const
+  {
+    const TriangleMesh& mesh = *this->TheSurface.Mesh;
+    const double* rest = this->TheSurface.Positions->data() + 3 * static_cast<std::size_t>(begin);
+    const double* origin = this->TheSurface.Origin.data();
+    // Without branches for each coordinate, which would cost as much as writing.
+    bool isGood = true;
+    for (int v = begin; v < end; ++v, positions += 3, rest += 3)
     {
-      bool isFiniteHere = true;
-      for (int v = begin; v < end; ++v)
+      Real* point = this->To + 3 * static_cast<std::size_t>(v);
+      const double x = positions[0] - rest[0];
+      const double y = positions[1] - rest[1];
+      const double z = positions[2] - rest[2];
+      const bool isStill = (x == 0.0) & (y == 0.0) & (z == 0.0);
+      if (isStill || !mesh.IsUsed(v))
       {
-        const std::size_t first = 3 * static_cast<std::size_t>(v);
-        const double* position = positions.data() + first;
-        const double* before = rest.data() + first;
-        Real* point = to + first;
-        if (mesh.IsUsed(v) &&
-          (position[0] != before[0] || position[1] != before[1] || position[2] != before[2]))
-        {
-          for (int c = 0; c < 3; ++c)
-          {
-            point[c] = static_cast<Real>(position[c] + surface.Origin[c]);
-          }
-          // x - x is 0 unless x is infinite or NaN: branches would cost as much as writing.
-          isFiniteHere &=
-            (point[0] - point[0]) + (point[1] - point[1]) + (point[2] - point[2]) == Real(0);
-        }
-        else if (from)
-        {
-          // std::copy_n of three would be a call.
-          point[0] = from[first];
-          point[1] = from[first + 1];
-          point[2] = from[first + 2];
-        }
-        else
-        {
-          for (int c = 0; c < 3; ++c)
-          {
-            point[c] = static_cast<Real>(input->GetComponent(v, c));
-          }
-        }
+        this->CopyInput(v, point);
+        continue;
       }
-      if (!isFiniteHere)
+      point[0] = static_cast<Real>(positions[0] + origin[0]);
+      point[1] = static_cast<Real>(positions[1] + origin[1]);
+      point[2] = static_cast<Real>(positions[2] + origin[2]);
+      // x - x is 0 unless x is infinite or NaN.
+      isGood &= (point[0] - point[0]) + (point[1] - point[1]) + (point[2] - point[2]) == Real(0);
+      isGood &= (std::abs(x) <= farthest) & (std::abs(y) <= farthest) & (std::abs(z) <= farthest);
+    }
+    return isGood;
+  }
+
+private:
+  void CopyInput(int v, Real* point) const
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      point[c] = this->From ? this->From[3 * static_cast<std::size_t>(v) + c]
+                            : static_cast<Real>(this->Input->GetComponent(v, c));
+    }
+  }
+
+  const Surface& TheSurface;
+  vtkDataArray* Input;
+  const Real* From;
+  Real* To;
+};
+
+/// Whether all coordinates are as CoordinateWriter wants them.
+template <typename Array>
+bool WriteBlocks(const Surface& surface, const PositionRows& rows, double farthest,
+  vtkDataArray* input, Array* output, const ExecutionContext& context)
+{
+  const CoordinateWriter<Array> writer(surface, input, output);
+  const int count = surface.Mesh->NumberOfVertices();
+  std::atomic<bool> isGood{ true };
+  // Over blocks: what a thread does between two of them counts as one step.
+  context.For(count / PositionBlock + 1,
+    [&](int firstBlock, int endBlock)
+    {
+      double buffer[3 * PositionBlock];
+      for (int block = firstBlock; block < endBlock; ++block)
       {
-        isFinite = false;
+        const int begin = block * PositionBlock;
+        const int end = std::min(begin + PositionBlock, count);
+        rows(begin, end, buffer);
+        if (!writer.Write(begin, end, buffer, farthest))
+        {
+          isGood = false;
+        }
       }
     });
-  return isFinite;
+  return isGood;
+}
+
+/// Points for the output in the precision of the input, and whether they are as
+/// CoordinateWriter wants them.
+bool FillPoints(const Surface& surface, const PositionRows& rows, double farthest,
+  vtkPolyData* input, vtkPoints* points, const ExecutionContext& context)
+{
+  const bool isFloat = input->GetPoints()->GetDataType() == VTK_FLOAT;
+  points->SetDataType(isFloat ? VTK_FLOAT : VTK_DOUBLE);
+  points->SetNumberOfPoints(input->GetNumberOfPoints());
+  vtkDataArray* from = input->GetPoints()->GetData();
+  return isFloat ? WriteBlocks(surface, rows, farthest, from,
+                     vtkFloatArray::FastDownCast(points->GetData()), context)
+                 : WriteBlocks(surface, rows, farthest, from,
+                     vtkDoubleArray::FastDownCast(points->GetData()), context);
 }
 
 [[noreturn]] void ThrowNotFinite(const Surface& surface, vtkDataArray* coordinates)
@@ -242,20 +291,28 @@ std::string WriteSurface(const Surface& surface, const Points& positions, vtkPol
 {
   output->ShallowCopy(input);
   vtkNew<vtkPoints> points;
-  const bool isFloat = input->GetPoints()->GetDataType() == VTK_FLOAT;
-  points->SetDataType(isFloat ? VTK_FLOAT : VTK_DOUBLE);
-  points->SetNumberOfPoints(input->GetNumberOfPoints());
-  vtkDataArray* from = input->GetPoints()->GetData();
-  const bool isFinite = isFloat ? WriteCoordinates(surface, positions, from,
-                                    vtkFloatArray::FastDownCast(points->GetData()), context)
-                                : WriteCoordinates(surface, positions, from,
-                                    vtkDoubleArray::FastDownCast(points->GetData()), context);
-  if (!isFinite)
+  const PositionRows rows = [&positions](int begin, int end, double* to)
+  { std::copy(positions.row(begin).data(), positions.row(begin).data() + 3 * (end - begin), to); };
+  constexpr double anywhere = std::numeric_limits<double>::infinity();
+  if (!FillPoints(surface, rows, anywhere, input, points, context))
   {
     ThrowNotFinite(surface, points->GetData());
   }
   output->SetPoints(points);
   return UpdateAllNormals(surface, surface.Positions.get(), positions, output, context);
+}
+
+bool WriteSurfaceRows(const Surface& surface, const PositionRows& rows, double farthest,
+  vtkPolyData* input, vtkPolyData* output, const ExecutionContext& context)
+{
+  output->ShallowCopy(input);
+  vtkNew<vtkPoints> points;
+  const bool isGood = FillPoints(surface, rows, farthest, input, points, context);
+  if (isGood)
+  {
+    output->SetPoints(points);
+  }
+  return isGood;
 }
 
 void WriteReconstruction(const Surface& surface, const Points& positions, vtkPolyData* input,

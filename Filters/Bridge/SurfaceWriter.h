@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Bridge/SurfaceReader.h"
+#include "Kernel/Deformation/PositionRows.h"
 
 namespace cartan
 {
@@ -16,6 +17,12 @@ namespace cartan
 /// precision. Returns what is odd, in sentences.
 std::string WriteSurface(const Surface& surface, const Points& positions, vtkPolyData* input,
   vtkPolyData* output, const ExecutionContext& context);
+
+/// The same from rows in one pass over memory, for an input without normals. False, and `output`
+/// has the points of the input, where a coordinate is not finite, outgrows the precision, or
+/// moves by more than `farthest`.
+bool WriteSurfaceRows(const Surface& surface, const PositionRows& rows, double farthest,
+  vtkPolyData* input, vtkPolyData* output, const ExecutionContext& context);
 
 /// The same for positions that do not come from the input's: double precision
 /// (#V x 3 in world coordinates), and normals computed from them.

@@ -353,13 +353,19 @@ HandleTargets CommonMotion::Remove(const HandleTargets& targets)
   return relative;
 }
 
-/// Whether all handles that a region sees make one rigid motion: #regions.
+/// Whether all handles that a region sees make one rigid motion: #regions; empty for targets that
+/// differ from point to point and handles that are not held in position.
 std::vector<char> CommonMotion::RigidRegions(const HandleTargets& relative) const
 {
   const auto extent = [this] {
     return this->Problem.Pieces ? this->ExtentOfPieces : this->Problem.Rest->cwiseAbs().maxCoeff();
   };
   std::vector<char> isRigid;
+  if (relative.IsPerVertex() || relative.RotationVectors.rows() ||
+    !this->Problem.ConstrainPositions)
+  {
+    return isRigid;
+  }
   for (int region = 0; region < this->Regions.NumberOfRegions(); ++region)
   {
     const std::vector<int>& handles = this->Regions.GetHandles(region);
@@ -371,14 +377,15 @@ std::vector<char> CommonMotion::RigidRegions(const HandleTargets& relative) cons
   return isRigid;
 }
 
+bool CommonMotion::HasRigidRegions(const HandleTargets& relative) const
+{
+  const std::vector<char> isRigid = this->RigidRegions(relative);
+  return std::find(isRigid.begin(), isRigid.end(), 1) != isRigid.end();
+}
+
 void CommonMotion::Follow(
   const HandleTargets& relative, bool wantTransforms, DeformedSurface& result) const
 {
-  if (relative.IsPerVertex() || relative.RotationVectors.rows() ||
-    !this->Problem.ConstrainPositions)
-  {
-    return;
-  }
   const std::vector<char> isRigid = this->RigidRegions(relative);
   if (std::find(isRigid.begin(), isRigid.end(), 1) == isRigid.end())
   {
@@ -402,23 +409,26 @@ void CommonMotion::Follow(
 
 void CommonMotion::Restore(bool wantTransforms, DeformedSurface& result) const
 {
-  if (this->IsIdentity)
+  const int count = this->Problem.Mesh->NumberOfVertices();
+  this->RestoreRows(0, count, result.Positions.data());
+  for (int v = 0; v < count && wantTransforms && !this->IsIdentity; ++v)
   {
-    return;
-  }
-  for (int v = 0; v < this->Problem.Mesh->NumberOfVertices(); ++v)
-  {
-    if (!this->Regions.IsReached(v) || !this->Problem.Mesh->IsUsed(v))
-    {
-      continue;
-    }
-    result.Positions.row(v) =
-      (this->Motion.Rotation * result.Positions.row(v).transpose() + this->Motion.Translation)
-        .transpose();
-    if (wantTransforms)
+    if (this->Regions.IsReached(v) && this->Problem.Mesh->IsUsed(v))
     {
       MatrixAt(result.Transforms, v) =
         this->Motion.Rotation * MatrixAt(result.Transforms, v).eval();
+    }
+  }
+}
+
+void CommonMotion::RestoreRows(int begin, int end, double* positions) const
+{
+  for (int v = begin; v < end && !this->IsIdentity; ++v, positions += 3)
+  {
+    if (this->Regions.IsReached(v) && this->Problem.Mesh->IsUsed(v))
+    {
+      Eigen::Map<Eigen::Vector3d> position(positions);
+      position = (this->Motion.Rotation * position + this->Motion.Translation).eval();
     }
   }
 }

@@ -46,8 +46,14 @@ public:
   /// differ from point to point, or handles that are not held in position.
   void Follow(const HandleTargets& relative, bool wantTransforms, DeformedSurface& result) const;
 
+  /// Whether there are such regions.
+  bool HasRigidRegions(const HandleTargets& relative) const;
+
   /// From the result for the relative targets to that for the given ones.
   void Restore(bool wantTransforms, DeformedSurface& result) const;
+
+  /// The same for the positions of a range of vertices, three numbers each.
+  void RestoreRows(int begin, int end, double* positions) const;
 
   const RigidMotion& GetMotion() const { return this->Motion; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/FrameDeformer.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cartan
@@ -8,9 +9,8 @@ namespace cartan
 namespace
 {
 /// Adds (s A - I) d. `transform` is a row of Matrices; numbers of their own stay in
-/// registers, where Eigen's 3 x 3 matrices go through memory.
-void AddTurned(
-  const double* transform, double scale, const Eigen::Vector3d& d, Eigen::Vector3d& sum)
+/// registers, where Eigen's 3 x 3 matrices and vectors go through memory.
+inline void AddTurned(const double* transform, double scale, const double* d, double* sum)
 {
   for (int c = 0; c < 3; ++c)
   {
@@ -74,24 +74,88 @@ std::size_t FrameDeformer::GetBytes() const
     (this->Table ? this->Table->GetBytes() : 0);
 }
 
+PositionRows FrameDeformer::RowsRelative(
+  const HandleTargets& targets, const ExecutionContext& context)
+{
+  this->Warning.clear();
+  PositionRows sums = this->TableSums(targets, context);
+  this->UsesTable = static_cast<bool>(sums);
+  if (!sums && !this->PreservesVolume())
+  {
+    sums = this->DirectSums(targets, context);
+  }
+  this->Rows = nullptr;
+  if (sums)
+  {
+    this->Rows = [this, targets, sums = std::move(sums)](int begin, int end, double* rows)
+    { this->WriteRows(targets, sums, begin, end, rows); };
+  }
+  return this->Rows;
+}
+
+/// Sums at unknown vertices, targets at those of handles, and the rest elsewhere.
+void FrameDeformer::WriteRows(
+  const HandleTargets& targets, const PositionRows& sums, int begin, int end, double* rows) const
+{
+  const HandleLaplacian& system = *this->PositionSystem;
+  const int numberOfUnknowns = system.NumberOfUnknowns();
+  int unknown = system.NumberOfUnknownsBefore(begin);
+  auto held = std::lower_bound(this->HandleVertices.begin(), this->HandleVertices.end(), begin,
+    [](const HandleVertex& handle, int vertex) { return handle.Vertex < vertex; });
+  const auto row = [&](int v) { return rows + 3 * static_cast<std::size_t>(v - begin); };
+  for (int v = begin; v < end;)
+  {
+    // Unknowns that are next to each other, then all vertices up to the next one.
+    const int first = unknown;
+    int next = v;
+    while (unknown < numberOfUnknowns && system.Vertex(unknown) == next && next < end)
+    {
+      ++unknown;
+      ++next;
+    }
+    sums(first, unknown, row(v));
+    v = next;
+    next = unknown < numberOfUnknowns ? std::min(system.Vertex(unknown), end) : end;
+    std::copy(this->Problem.Rest->data() + 3 * static_cast<std::size_t>(v),
+      this->Problem.Rest->data() + 3 * static_cast<std::size_t>(next), row(v));
+    // Softly held vertices are unknowns.
+    for (; held != this->HandleVertices.end() && held->Vertex < next; ++held)
+    {
+      if (held->Vertex >= v)
+      {
+        Eigen::Map<Eigen::Vector3d>(row(held->Vertex), 3) =
+          HandleTarget(this->Problem, targets, held->Vertex, held->Handle);
+      }
+    }
+    v = next;
+  }
+}
+
 void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {
-  this->Warning.clear();
-  result.Positions = *this->Problem.Rest;
+  const int numberOfVertices = this->Problem.Mesh->NumberOfVertices();
   // Not those of an earlier motion with another correction.
-  result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());
-  // Softly held and unheld vertices among these are overwritten by the solve.
-  for (const HandleVertex& held : this->HandleVertices)
-  {
-    result.Positions.row(held.Vertex) =
-      HandleTarget(this->Problem, targets, held.Vertex, held.Handle).transpose();
-  }
+  result.FrameScale.setOnes(numberOfVertices);
   this->NeedsVertices = wantTransforms || this->TriangleIds.empty() || this->NeutralOffsets();
-  this->UsesTable = this->DeformByTable(targets, result.Positions, context.Part(0.0, 0.3));
-  const bool isDirect = this->UsesTable ||
-    (!this->PreservesVolume() &&
-      this->DeformDirectly(targets, result.Positions, context.Part(0.3, 0.4)));
+  const bool isDirect = static_cast<bool>(this->Rows);
+  if (isDirect)
+  {
+    result.Positions.resize(numberOfVertices, 3);
+    context.For(numberOfVertices,
+      [&](int begin, int end)
+      { this->Rows(begin, end, result.Positions.data() + 3 * static_cast<std::size_t>(begin)); });
+  }
+  else
+  {
+    result.Positions = *this->Problem.Rest;
+    // Softly held and unheld vertices among these are overwritten by the solve.
+    for (const HandleVertex& held : this->HandleVertices)
+    {
+      result.Positions.row(held.Vertex) =
+        HandleTarget(this->Problem, targets, held.Vertex, held.Handle).transpose();
+    }
+  }
   if (!isDirect || wantTransforms)
   {
     if (this->Transforms.rows() == 0)
@@ -124,8 +188,7 @@ void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransf
   context.Report(1.0);
 }
 
-bool FrameDeformer::DeformByTable(
-  const HandleTargets& targets, Points& positions, const ExecutionContext& context)
+PositionRows FrameDeformer::TableSums(const HandleTargets& targets, const ExecutionContext& context)
 {
   // Frame scaling and the closing of volumes are not linear in the frames.
   const bool isLinear = !this->PreservesVolume() ||
@@ -135,13 +198,13 @@ bool FrameDeformer::DeformByTable(
   if (!(this->TableOptions.Range > 0.0) || !isLinear || targets.Motions.empty() ||
     !this->FindTurns(targets, axis, angles))
   {
-    return false;
+    return {};
   }
   Eigen::Index most = 0;
   const double largest = angles.cwiseAbs().maxCoeff(&most);
   if (largest > this->TableOptions.Range || (largest == 0.0 && angles.size() > 1))
   {
-    return false;
+    return {};
   }
   const double angle = angles[most];
   const Eigen::VectorXd ratios =
@@ -150,15 +213,14 @@ bool FrameDeformer::DeformByTable(
   const double range = this->HasTable(ratios, context) ? this->Table->GetRange() : 0.0;
   if (range == 0.0 || std::abs(angle) > range)
   {
-    return false;
+    return {};
   }
   std::vector<Eigen::Vector3d> translations;
   for (const HandleMotion& motion : targets.Motions)
   {
     translations.push_back(motion.Translation);
   }
-  this->Table->Evaluate(angle, axis, translations, positions, context);
-  return true;
+  return this->Table->Evaluate(angle, axis, translations);
 }
 
 /// Whether there is a table for these ratios, which may be made here.
@@ -250,8 +312,10 @@ Points FrameDeformer::TriangleSums(
         const double* transform = this->TriangleTransforms.row(i).data();
         Eigen::Vector3d first = Eigen::Vector3d::Zero();
         Eigen::Vector3d second = Eigen::Vector3d::Zero();
-        AddTurned(transform, scale, weights[2] * (a - b) + weights[1] * (a - c), first);
-        AddTurned(transform, scale, weights[2] * (b - a) + weights[0] * (b - c), second);
+        const Eigen::Vector3d atFirst = weights[2] * (a - b) + weights[1] * (a - c);
+        const Eigen::Vector3d atSecond = weights[2] * (b - a) + weights[0] * (b - c);
+        AddTurned(transform, scale, atFirst.data(), first.data());
+        AddTurned(transform, scale, atSecond.data(), second.data());
         parts.row(i) << first.transpose(), second.transpose();
       }
     });
@@ -284,46 +348,57 @@ Eigen::Vector3d FrameDeformer::RightHandSide(int unknown, const HandleTargets& t
 {
   const HandleLaplacian& system = *this->PositionSystem;
   const Points& rest = *this->Problem.Rest;
-  const Points* offsets = this->NeutralOffsets();
-  const bool isByVertex = this->TriangleIds.empty();
   const int v = system.Vertex(unknown);
-  const Eigen::Vector3d point = rest.row(v);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Vector3d own = Eigen::Vector3d::Zero(); // the sum of w_ij/2 (e + o)
+  const bool isByVertex = this->TriangleIds.empty();
+  Eigen::Vector3d sum = !this->NeutralOffsets()
+    ? (isByVertex ? this->EdgeSum<true, false>(unknown, transforms)
+                  : Eigen::Vector3d(Eigen::Vector3d::Zero()))
+    : (isByVertex ? this->EdgeSum<true, true>(unknown, transforms)
+                  : this->EdgeSum<false, true>(unknown, transforms));
   for (const auto* edge = system.EdgesBegin(unknown); edge != system.EdgesEnd(unknown); ++edge)
   {
-    const int w = system.Vertex(edge->Neighbor);
-    Eigen::Vector3d ofVertex = Eigen::Vector3d::Zero();
-    Eigen::Vector3d ofNeighbor = Eigen::Vector3d::Zero();
-    if (isByVertex)
-    {
-      ofVertex = point - rest.row(w).transpose();
-      ofNeighbor = ofVertex;
-    }
-    if (offsets)
-    {
-      const Eigen::Vector3d offset = (offsets->row(v) + offsets->row(w)).transpose();
-      ofVertex += offset;
-      ofNeighbor -= offset;
-    }
-    if (isByVertex || offsets)
-    {
-      const double half = 0.5 * edge->Weight;
-      own += half * ofVertex;
-      AddTurned(transforms.data() + 9 * Eigen::Index(w), 1.0, half * ofNeighbor, sum);
-    }
     if (edge->Neighbor >= system.NumberOfUnknowns())
     {
+      const int w = system.Vertex(edge->Neighbor);
       sum += edge->Weight * (result.Positions.row(w) - rest.row(w)).transpose();
     }
   }
-  AddTurned(transforms.data() + 9 * Eigen::Index(v), 1.0, own, sum);
   if (system.SquaredSoftWeight(unknown) > 0.0)
   {
+    const Eigen::Vector3d point = rest.row(v);
     sum += 0.5 * system.SquaredSoftWeight(unknown) *
       (HandleTarget(this->Problem, targets, v, system.MovingHandle(unknown)) - point);
   }
   return sum;
+}
+
+/// What the changed frames at a vertex and its neighbors add: e without IsByVertex, and o without
+/// HasOffsets, is zero.
+template <bool IsByVertex, bool HasOffsets>
+Eigen::Vector3d FrameDeformer::EdgeSum(int unknown, const Matrices& transforms) const
+{
+  const HandleLaplacian& system = *this->PositionSystem;
+  const double* rest = this->Problem.Rest->data();
+  const double* offsets = HasOffsets ? this->NeutralOffsets()->data() : nullptr;
+  const Eigen::Index v = system.Vertex(unknown);
+  double sum[3] = {};
+  double own[3] = {}; // the sum of w_ij/2 (e + o)
+  for (const auto* edge = system.EdgesBegin(unknown); edge != system.EdgesEnd(unknown); ++edge)
+  {
+    const Eigen::Index w = system.Vertex(edge->Neighbor);
+    const double half = 0.5 * edge->Weight;
+    double ofNeighbor[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      const double e = IsByVertex ? rest[3 * v + c] - rest[3 * w + c] : 0.0;
+      const double o = HasOffsets ? offsets[3 * v + c] + offsets[3 * w + c] : 0.0;
+      own[c] += half * (e + o);
+      ofNeighbor[c] = half * (e - o);
+    }
+    AddTurned(transforms.data() + 9 * w, 1.0, ofNeighbor, sum);
+  }
+  AddTurned(transforms.data() + 9 * v, 1.0, own, sum);
+  return { sum[0], sum[1], sum[2] };
 }
 
 void FrameDeformer::SolvePositions(const HandleTargets& targets, const Matrices& transforms,

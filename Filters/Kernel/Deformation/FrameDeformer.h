@@ -66,6 +66,7 @@ public:
   std::shared_ptr<const Eigen::VectorXd> GetPositionWeights() const { return this->EdgeWeights; }
 
 protected:
+  PositionRows RowsRelative(const HandleTargets& targets, const ExecutionContext& context) override;
   void DeformRelative(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
     const ExecutionContext& context) override;
 
@@ -83,11 +84,9 @@ protected:
   /// TriangleTransforms those of triangles where the method has them.
   virtual void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) = 0;
 
-  /// A shortcut for methods whose positions need no solve: whether it served.
-  virtual bool DeformDirectly(const HandleTargets&, Points&, const ExecutionContext&)
-  {
-    return false;
-  }
+  /// A shortcut for methods whose positions need no solve: those of ranges of PositionSystem's
+  /// unknowns; nothing where it does not serve.
+  virtual PositionRows DirectSums(const HandleTargets&, const ExecutionContext&) { return {}; }
 
   /// For methods that a TurnTable serves: whether all handles turn rigidly about one axis, that
   /// axis, and the angle of each moving handle. Then results about the rotations are set, too.
@@ -126,8 +125,9 @@ protected:
   std::string Warning;
 
 private:
-  bool DeformByTable(
-    const HandleTargets& targets, Points& positions, const ExecutionContext& context);
+  PositionRows TableSums(const HandleTargets& targets, const ExecutionContext& context);
+  void WriteRows(
+    const HandleTargets& targets, const PositionRows& sums, int begin, int end, double* rows) const;
   bool HasTable(const Eigen::VectorXd& ratios, const ExecutionContext& context);
   TurnsOfAngle TurnsWith(const Eigen::VectorXd& ratios) const;
   const Points* NeutralOffsets() const;
@@ -135,6 +135,8 @@ private:
     DeformedSurface& result, const ExecutionContext& context);
   Eigen::Vector3d RightHandSide(int unknown, const HandleTargets& targets,
     const Matrices& transforms, const DeformedSurface& result) const;
+  template <bool IsByVertex, bool HasOffsets>
+  Eigen::Vector3d EdgeSum(int unknown, const Matrices& transforms) const;
   Points TriangleSums(const Eigen::VectorXd& frameScale, const ExecutionContext& context) const;
   void ScaleFrames(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
@@ -147,6 +149,7 @@ private:
   Eigen::VectorXd RestHeights; ///< ColumnHeights at rest, empty until first needed
   Points TriangleWeights;      ///< CornerWeights, empty until first needed
 
+  PositionRows Rows; ///< of the current motion, where it needs no solve
   TurnTable::Options TableOptions;
   std::unique_ptr<TurnTable> Table;
   bool UsesTable = false;

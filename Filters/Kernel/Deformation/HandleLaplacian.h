@@ -5,6 +5,7 @@
 #include "Deformation/HandleProblem.h"
 #include "Deformation/PieceSystem.h"
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -87,6 +88,14 @@ public:
   /// The mesh's vertex of a local one, and the index of its handle in
   /// HandleProblem::Moving; -1 for pinned and free vertices.
   int Vertex(int local) const { return this->Vertices[local]; }
+
+  /// The number of unknowns, which are in the order of their vertices, before a vertex.
+  int NumberOfUnknownsBefore(int vertex) const
+  {
+    const auto end = this->Vertices.begin() + this->UnknownCount;
+    return static_cast<int>(
+      std::lower_bound(this->Vertices.begin(), end, vertex) - this->Vertices.begin());
+  }
   int MovingHandle(int local) const { return this->MovingHandles[local]; }
 
   /// What holds the locals: the unknowns softly with w^2 / 2, because L stands for

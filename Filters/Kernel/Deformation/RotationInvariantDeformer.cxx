@@ -160,7 +160,7 @@ void RotationInvariantDeformer::BlendMotions(
   this->AddIdentity(this->Harmonic.Blend(ofHandles, context), project, context);
 }
 
-/// Frames that are not projected need no table: DeformDirectly() is faster.
+/// Frames that are not projected need no table: DirectSums() are faster.
 bool RotationInvariantDeformer::FindTurns(
   const HandleTargets& targets, Eigen::Vector3d& axis, Eigen::VectorXd& angles)
 {
@@ -256,37 +256,35 @@ void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& contex
   }
 }
 
-bool RotationInvariantDeformer::DeformDirectly(
-  const HandleTargets& targets, Points& positions, const ExecutionContext& context)
+PositionRows RotationInvariantDeformer::DirectSums(
+  const HandleTargets& targets, const ExecutionContext& context)
 {
   if (this->PositionSystem != this->FrameSystem || !this->Harmonic.IsStored() ||
     targets.IsPerVertex() || this->UsesRotations(targets))
   {
-    return false;
+    return {};
   }
   if (this->DragFields.rows() == 0)
   {
     this->ComputeDragFields(context);
   }
-  const int numberOfMoving = static_cast<int>(targets.Motions.size());
-  const HandleLaplacian& system = *this->PositionSystem;
-  context.For(system.NumberOfUnknowns(),
-    [&](int begin, int end)
+  return [this, motions = targets.Motions](int begin, int end, double* rows)
+  {
+    const auto numberOfFields = static_cast<std::size_t>(this->DragFields.cols());
+    const double* fields =
+      this->DragFields.data() + static_cast<std::size_t>(begin) * numberOfFields;
+    for (int i = begin; i < end; ++i, fields += numberOfFields, rows += 3)
     {
-      for (int i = begin; i < end; ++i)
+      Eigen::Vector3d position(fields[0], fields[1], fields[2]);
+      const double* phi = fields + 3;
+      for (const HandleMotion& motion : motions)
       {
-        const double* fields = this->DragFields.data() +
-          static_cast<std::size_t>(i) * static_cast<std::size_t>(this->DragFields.cols());
-        Eigen::Vector3d position(fields[0], fields[1], fields[2]);
-        for (int k = 0; k < numberOfMoving; ++k)
-        {
-          const double* phi = fields + 3 + 4 * k;
-          position += targets.Motions[k].Linear * Eigen::Map<const Eigen::Vector3d>(phi) +
-            phi[3] * targets.Motions[k].Translation;
-        }
-        positions.row(system.Vertex(i)) = position;
+        position +=
+          motion.Linear * Eigen::Map<const Eigen::Vector3d>(phi) + phi[3] * motion.Translation;
+        phi += 4;
       }
-    });
-  return true;
+      Eigen::Map<Eigen::Vector3d>(rows, 3) = position;
+    }
+  };
 }
 }

@@ -54,8 +54,7 @@ public:
 protected:
   bool ServesPieces() const override { return this->KeepsNoVolume(); }
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
-  bool DeformDirectly(
-    const HandleTargets& targets, Points& positions, const ExecutionContext& context) override;
+  PositionRows DirectSums(const HandleTargets& targets, const ExecutionContext& context) override;
   bool FindTurns(
     const HandleTargets& targets, Eigen::Vector3d& axis, Eigen::VectorXd& angles) override;
   TurnParts TurnOf(int local, const Eigen::VectorXd& ratios, double angle) const override;

@@ -29,18 +29,23 @@ HandleProblem WithMovedPoints(HandleProblem problem)
   return problem;
 }
 
-std::string DescribeLostDigits(const HandleProblem& problem, const DeformedSurface& result)
+double ShortMotion(const HandleProblem& problem)
 {
-  // At each motion: one edge is enough to see that a motion is not far, in a single pass.
   const Triangles& triangles = problem.GetWhole()->GetTriangles();
   const double edge = triangles.rows() > 0
     ? (problem.Rest->row(triangles(0, 0)) - problem.Rest->row(triangles(0, 1))).norm()
     : 0.0;
-  const double way = std::sqrt(3.0) * (result.Positions - *problem.Rest).cwiseAbs().maxCoeff();
-  if (way <= FarthestMotion * edge)
+  return FarthestMotion * edge / std::sqrt(3.0);
+}
+
+std::string DescribeLostDigits(const HandleProblem& problem, const DeformedSurface& result)
+{
+  // At each motion, in a single pass.
+  if ((result.Positions - *problem.Rest).cwiseAbs().maxCoeff() <= ShortMotion(problem))
   {
     return {};
   }
+  const Triangles& triangles = problem.GetWhole()->GetTriangles();
   const double size = BoundingDiagonal(*problem.Rest, triangles);
   const double farthest = (result.Positions - *problem.Rest).rowwise().norm().maxCoeff();
   if (!(farthest > FarthestMotion * size))

@@ -45,6 +45,10 @@ struct RoundingDifference
 /// left for its shape there.
 constexpr double FarthestMotion = 1e9;
 
+/// A motion along each axis that is far less, found in no time, for all that move no farther:
+/// one edge is enough to see that.
+double ShortMotion(const HandleProblem& problem);
+
 /// A sentence on a result with points farther away, with what to do; empty where there
 /// are none.
 std::string DescribeLostDigits(const HandleProblem& problem, const DeformedSurface& result);

@@ -42,15 +42,47 @@ void SurfaceDeformer::RequireWholeUnlessServed(const HandleTargets& targets) con
   }
 }
 
-void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
-  DeformedSurface& result, const ExecutionContext& context)
+HandleTargets SurfaceDeformer::Relative(const HandleTargets& targets)
 {
   this->RequireWholeUnlessServed(targets);
   if (!this->Common)
   {
     this->Common = std::make_unique<CommonMotion>(this->Problem);
   }
-  const HandleTargets relative = this->Common->Remove(targets);
+  return this->Common->Remove(targets);
+}
+
+void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
+  DeformedSurface& result, const ExecutionContext& context)
+{
+  const HandleTargets relative = this->Relative(targets);
+  this->RowsRelative(relative, context.Part(0.0, 0.3));
+  this->DeformFrom(targets, relative, wantTransforms, result, context);
+}
+
+PositionRows SurfaceDeformer::DeformInRows(
+  const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context)
+{
+  const HandleTargets relative = this->Relative(targets);
+  PositionRows rows = this->RowsRelative(relative, context.Part(0.0, 0.3));
+  // Vertices that others decide about need the whole surface.
+  const bool isAlone = this->Problem.JoinedWith.empty() && this->Problem.Riders.empty() &&
+    !(this->FollowsRigidHandles() && this->Common->HasRigidRegions(relative));
+  if (rows && isAlone)
+  {
+    return [this, rows = std::move(rows)](int begin, int end, double* positions)
+    {
+      rows(begin, end, positions);
+      this->Common->RestoreRows(begin, end, positions);
+    };
+  }
+  this->DeformFrom(targets, relative, false, result, context);
+  return {};
+}
+
+void SurfaceDeformer::DeformFrom(const HandleTargets& targets, const HandleTargets& relative,
+  bool wantTransforms, DeformedSurface& result, const ExecutionContext& context)
+{
   this->DeformRelative(relative, wantTransforms, result, context);
   if (this->FollowsRigidHandles())
   {

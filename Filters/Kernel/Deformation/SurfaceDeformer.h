@@ -4,6 +4,7 @@
 #include "Base/ExecutionContext.h"
 #include "Deformation/CommonMotion.h"
 #include "Deformation/HandleProblem.h"
+#include "Deformation/PositionRows.h"
 
 #include <cstddef>
 #include <memory>
@@ -32,6 +33,13 @@ public:
   void Deform(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
     const ExecutionContext& context);
 
+  /// The same without transforms, in one pass over memory where the motion is a sum over kept
+  /// fields: the rows of the deformed surface, to the last bit those of Deform(), and `result`
+  /// stays as it was. They hold until the next motion. Else there are none, and `result` is
+  /// written.
+  PositionRows DeformInRows(
+    const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
+
   /// What the deformer was made for. HandleTargets::Motions has one per Moving
   /// handle of this one.
   const HandleProblem& GetProblem() const { return this->Problem; }
@@ -53,6 +61,10 @@ protected:
     : Problem(std::move(problem))
   {
   }
+
+  /// The rows for a motion that is a sum over kept fields, for methods that have such. Called
+  /// before DeformRelative() of each motion, for the same targets.
+  virtual PositionRows RowsRelative(const HandleTargets&, const ExecutionContext&) { return {}; }
 
   /// The method itself, as Deform() has it; the targets are relative to the
   /// common motion, and their rotation vectors as CommonMotion chooses them.
@@ -79,6 +91,9 @@ protected:
 
 private:
   void RequireWholeUnlessServed(const HandleTargets& targets) const;
+  HandleTargets Relative(const HandleTargets& targets);
+  void DeformFrom(const HandleTargets& targets, const HandleTargets& relative, bool wantTransforms,
+    DeformedSurface& result, const ExecutionContext& context);
 
   std::unique_ptr<CommonMotion> Common; ///< from the first motion on
 };

@@ -285,43 +285,40 @@ double TurnTable::ErrorAt(double angle, const Points* offsets, const TurnsOfAngl
   return largest[0];
 }
 
-void TurnTable::Evaluate(double angle, const Eigen::Vector3d& axis,
-  const std::vector<Eigen::Vector3d>& translations, Points& positions,
-  const ExecutionContext& context) const
+PositionRows TurnTable::Evaluate(
+  double angle, const Eigen::Vector3d& axis, const std::vector<Eigen::Vector3d>& translations) const
 {
-  const Eigen::VectorXf polynomials = this->Polynomials(angle);
-  const Eigen::Vector3f unit = axis.cast<float>();
   std::vector<Eigen::Vector3f> shifts;
   shifts.reserve(static_cast<std::size_t>(this->NumberOfHandles));
   for (int k = 0; k < this->NumberOfHandles; ++k)
   {
     shifts.push_back(translations[static_cast<std::size_t>(k)].cast<float>());
   }
-  const int numberOfModes = static_cast<int>(this->Modes.size());
-  context.For(this->System->NumberOfUnknowns(),
-    [&](int begin, int end)
+  return [this, polynomials = this->Polynomials(angle), unit = Eigen::Vector3f(axis.cast<float>()),
+           shifts = std::move(shifts)](int begin, int end, double* rows)
+  {
+    const int numberOfModes = static_cast<int>(this->Modes.size());
+    for (int i = begin; i < end; ++i, rows += 3)
     {
-      for (int i = begin; i < end; ++i)
+      const float* field = this->Fields.data() + i * this->Fields.cols();
+      Eigen::Vector3f sines = Eigen::Vector3f::Zero();
+      Eigen::Vector3f versines = Eigen::Vector3f::Zero();
+      for (int m = 0; m < this->NumberOfSines; ++m)
       {
-        const float* field = this->Fields.data() + i * this->Fields.cols();
-        Eigen::Vector3f sines = Eigen::Vector3f::Zero();
-        Eigen::Vector3f versines = Eigen::Vector3f::Zero();
-        for (int m = 0; m < this->NumberOfSines; ++m)
-        {
-          sines += polynomials[m] * Eigen::Map<const Eigen::Vector3f>(field + 3 * m);
-        }
-        for (int m = this->NumberOfSines; m < numberOfModes; ++m)
-        {
-          versines += polynomials[m] * Eigen::Map<const Eigen::Vector3f>(field + 3 * m);
-        }
-        Eigen::Vector3f shift = unit.cross(Eigen::Vector3f(sines + unit.cross(versines)));
-        for (int k = 0; k < this->NumberOfHandles; ++k)
-        {
-          shift += field[3 * numberOfModes + k] * shifts[static_cast<std::size_t>(k)];
-        }
-        const int v = this->System->Vertex(i);
-        positions.row(v) = this->Rest->row(v) + shift.cast<double>().transpose();
+        sines += polynomials[m] * Eigen::Map<const Eigen::Vector3f>(field + 3 * m);
       }
-    });
+      for (int m = this->NumberOfSines; m < numberOfModes; ++m)
+      {
+        versines += polynomials[m] * Eigen::Map<const Eigen::Vector3f>(field + 3 * m);
+      }
+      Eigen::Vector3f shift = unit.cross(Eigen::Vector3f(sines + unit.cross(versines)));
+      for (int k = 0; k < this->NumberOfHandles; ++k)
+      {
+        shift += field[3 * numberOfModes + k] * shifts[static_cast<std::size_t>(k)];
+      }
+      Eigen::Map<Eigen::RowVector3d> position(rows);
+      position = this->Rest->row(this->System->Vertex(i)) + shift.cast<double>().transpose();
+    }
+  };
 }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Deformation/HandleLaplacian.h"
+#include "Deformation/PositionRows.h"
 
 #include <functional>
 #include <vector>
@@ -58,10 +59,10 @@ public:
   /// in its middle: the error of a sum of Chebyshev polynomials is largest at the end.
   double GetError() const { return this->Error; }
 
-  /// Writes the positions of the unknown vertices (#V x 3). A translation per moving handle.
-  void Evaluate(double angle, const Eigen::Vector3d& axis,
-    const std::vector<Eigen::Vector3d>& translations, Points& positions,
-    const ExecutionContext& context) const;
+  /// The positions of ranges of unknowns, as long as the table is there. A translation per moving
+  /// handle.
+  PositionRows Evaluate(double angle, const Eigen::Vector3d& axis,
+    const std::vector<Eigen::Vector3d>& translations) const;
 
   std::size_t GetBytes() const { return TotalBytes(this->Fields); }
 
