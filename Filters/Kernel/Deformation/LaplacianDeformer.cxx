@@ -58,32 +58,24 @@ void AddTwoRing(
 }
 
 /// The sum over the points w of a ring of (s_w - s)(p_w - p)^T with the means p and s of the
-/// rest positions and the deformed ones, in one pass; nothing where all move alike.
-std::optional<Eigen::Matrix3d> RingCovariance(
-  const int* begin, const int* end, const Points& rest, const Points& displacements)
+/// rest positions and the deformed ones; nothing where all move alike. As the p_w - p add up to
+/// zero, it is that of the rest plus the sum of (d_w - d_v)(p_w - p)^T, v the first point.
+std::optional<Eigen::Matrix3d> RingCovariance(const int* begin, const int* end,
+  const Eigen::Vector3d& mean, const Points& rest, const Points& displacements)
 {
-  // Relative to the first point, which is at the center: little is lost below.
-  const double* const restOrigin = rest.row(*begin).data();
   const double* const origin = displacements.row(*begin).data();
-  double restSum[3] = {};
-  double sum[3] = {};
   double products[3][3] = {};
   bool isStill = true;
   for (const int* w = begin; w != end; ++w)
   {
     const double* const point = rest.data() + 3 * static_cast<Eigen::Index>(*w);
     const double* const moved = displacements.data() + 3 * static_cast<Eigen::Index>(*w);
-    double before[3];
-    double after[3];
-    for (int c = 0; c < 3; ++c)
-    {
-      const double change = moved[c] - origin[c];
-      before[c] = point[c] - restOrigin[c];
-      after[c] = before[c] + change;
-      restSum[c] += before[c];
-      sum[c] += after[c];
-      isStill = isStill && change == 0.0;
-    }
+    const double x = moved[0] - origin[0];
+    const double y = moved[1] - origin[1];
+    const double z = moved[2] - origin[2];
+    isStill &= (x == 0.0) & (y == 0.0) & (z == 0.0);
+    const double before[3] = { point[0] - mean[0], point[1] - mean[1], point[2] - mean[2] };
+    const double after[3] = { before[0] + x, before[1] + y, before[2] + z };
     for (int c = 0; c < 3; ++c)
     {
       for (int r = 0; r < 3; ++r)
@@ -96,10 +88,7 @@ std::optional<Eigen::Matrix3d> RingCovariance(
   {
     return {};
   }
-  const Eigen::Map<const Eigen::Vector3d> sumOfRest(restSum);
-  const Eigen::Map<const Eigen::Vector3d> sumOfAfter(sum);
-  const Eigen::Map<const Eigen::Matrix3d> uncentered(products[0]);
-  return uncentered - sumOfAfter * (sumOfRest.transpose() / static_cast<double>(end - begin));
+  return Eigen::Map<const Eigen::Matrix3d>(products[0]);
 }
 
 /// d -> (s I + [h]x) d as a 3 x 4 matrix on (s, h).
@@ -154,6 +143,17 @@ void LaplacianDeformer::FindRings()
     {
       AddTwoRing(mesh, vertices[row], row, lastSeen, this->TwoRings);
       this->TwoRingOffsets.push_back(this->TwoRings.size());
+    }
+    this->TwoRingMeans.setZero(this->NumberOfRows(), 3);
+    for (int row = 0; row < this->NumberOfRows(); ++row)
+    {
+      const std::size_t begin = this->TwoRingOffsets[row];
+      const std::size_t end = this->TwoRingOffsets[row + 1];
+      for (std::size_t k = begin; k < end; ++k)
+      {
+        this->TwoRingMeans.row(row) +=
+          this->Problem.Rest->row(this->TwoRings[k]) / static_cast<double>(end - begin);
+      }
     }
   }
   if (this->Rotations == LaplacianRotations::Implicit)
@@ -259,7 +259,8 @@ void LaplacianDeformer::EstimateRotations(
       {
         const std::optional<Eigen::Matrix3d> covariance =
           RingCovariance(this->TwoRings.data() + this->TwoRingOffsets[row],
-            this->TwoRings.data() + this->TwoRingOffsets[row + 1], rest, displacements);
+            this->TwoRings.data() + this->TwoRingOffsets[row + 1],
+            this->TwoRingMeans.row(row).transpose(), rest, displacements);
         auto transform = MatrixAt(this->Transforms, row);
         // Exact where nothing moves: differential coordinates next to short edges
         // would make much of the rounding of a fit. Elsewhere the last round's rotation is
@@ -361,7 +362,11 @@ void LaplacianDeformer::DeformRelative(const HandleTargets& targets, bool wantTr
     this->SolveImplicitly(displacements);
   }
   this->Unsettled.clear();
-  this->SolveRotated(targetsOfLocals, displacements);
+  if (this->Rotations == LaplacianRotations::Implicit ||
+    !this->SumHandleFields(targets, displacements, context))
+  {
+    this->SolveRotated(targetsOfLocals, displacements);
+  }
   Points earlier = this->System.Gather(displacements);
   const bool isEstimated = this->Rotations == LaplacianRotations::Estimated && earlier.rows() > 0;
   const int rounds = isEstimated ? this->Rounds : 0;

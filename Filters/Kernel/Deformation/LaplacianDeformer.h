@@ -57,7 +57,8 @@ public:
   {
     return this->GetBaseBytes() + this->System.GetBytes() + this->ImplicitSystem.GetBytes() +
       TotalBytes(this->MovingHandles, this->Differential, this->Rings, this->TwoRings,
-        this->TwoRingOffsets, this->Transforms, this->Fits);
+        this->TwoRingOffsets, this->TwoRingMeans, this->HandleFields, this->HandleCenters,
+        this->Transforms, this->Fits);
   }
 
 protected:
@@ -74,6 +75,11 @@ private:
   SparseMatrix ImplicitEquations();
   void EstimateRotations(const Points& displacements, const ExecutionContext& context);
   void SolveImplicitly(const Points& displacements);
+  /// Writes the displacements of the unknowns that differential coordinates as they are have,
+  /// without a solve; false where there are no fields for that.
+  bool SumHandleFields(
+    const HandleTargets& targets, Points& displacements, const ExecutionContext& context);
+  void ComputeHandleFields();
   void SolveRotated(const Points& targetsOfLocals, Points& displacements) const;
   /// `moves` (#locals) is how far the last round has moved them, `before` the
   /// farthest move of the round before.
@@ -93,6 +99,11 @@ private:
   /// the other; where each begins, #rows + 1.
   std::vector<int> TwoRings;
   std::vector<std::size_t> TwoRingOffsets;
+  Points TwoRingMeans; ///< of their rest positions, #rows x 3
+  /// Of each moving handle k: g_k, 3 numbers, and h_k (SumHandleFields); #unknowns x 4 #Moving,
+  /// empty until first needed.
+  Field HandleFields;
+  std::vector<Eigen::Vector3d> HandleCenters;
   /// Implicit: (s, h) of each row as a linear function of the positions of its
   /// ring, 4 x 3 k.
   std::vector<Eigen::MatrixXd> Fits;
