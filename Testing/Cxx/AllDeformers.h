@@ -5,6 +5,7 @@
 #include "Kernel/Deformation/LaplacianDeformer.h"
 #include "Kernel/Deformation/MultiresolutionDeformer.h"
 #include "Kernel/Deformation/PoissonDeformer.h"
+#include "Kernel/Deformation/PyramidDeformer.h"
 #include "Kernel/Deformation/RotationInvariantDeformer.h"
 #include "Kernel/Deformation/ShapePreservingDeformer.h"
 #include "Kernel/Deformation/SimilarityDeformer.h"
@@ -67,6 +68,7 @@ inline std::map<std::string, MakeDeformer> All(
     backend, RigidityEnergy::SpokesAndRims, InitialGuess::RotationInvariant);
   makers["SmoothedRotations"] = Maker<AsRigidAsPossibleDeformer>(
     backend, RigidityEnergy::SmoothedRotations, InitialGuess::RestShape);
+  makers["Pyramid"] = Maker<PyramidDeformer>(backend, InitialGuess::ShapePreserving);
   makers["SimilarityEdgeForm"] =
     SimilarityMaker(backend, SimilarityReconstruction::EdgeForm, true, 3);
   makers["SimilarityLeastSquares"] =

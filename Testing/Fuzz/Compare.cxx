@@ -49,7 +49,8 @@ bool IsComparable(const Field& field, const Relation& relation)
     return false;
   }
   // Rows of different units; an energy whose unit depends on the weights.
-  static const std::set<std::string> ofManyUnits = { "Reference", "Current", "RigidityEnergy" };
+  static const std::set<std::string> ofManyUnits = { "Reference", "Current", "PyramidEnergy",
+    "RigidityEnergy" };
   if (relation.Map.Scale != 1.0 && ofManyUnits.count(field.Name.substr(0, field.Name.find(" of "))))
   {
     return false;

@@ -39,6 +39,7 @@ Field Describe(const std::string& name)
     { "Points", { Kind::Point, 1 } },
     { "Normals", { Kind::Vector, 0 } },
     { "RotationVector", { Kind::Vector, 0 } },
+    { "PyramidEnergy", { Kind::Scalar, 2 } },
     { "RigidityEnergy", { Kind::Scalar, 2 } },
     { "LocalDepth", { Kind::Scalar, 1 } },
     { "LocalVolume", { Kind::Scalar, 3 } },
