@@ -115,14 +115,6 @@ GradientSystem::GradientSystem(const HandleProblem& problem, int coherenceRings,
   this->Gradients = std::make_unique<RingGradients>(
     *problem.Mesh, *problem.Rest, constraints, std::max(1, coherenceRings), context.Part(0.0, 0.3));
   this->Factorize(*problem.Mesh, context.Part(0.3, 1.0));
-  if (this->StoresFields)
-  {
-    this->ComputeDragFields(problem);
-    this->ReleasedFactorizations = this->GetNumberOfFactorizations();
-    this->System = AnchoredSystem(this->Backend, GradientLimits(problem));
-    this->IsFactorized = false;
-    ReturnFreedMemory();
-  }
 }
 
 GradientConstraints GradientSystem::ReadConstraints(
@@ -344,16 +336,30 @@ void GradientSystem::Solve(
   const HandleProblem& problem, const HandleTargets& targets, const ExecutionContext& context)
 {
   this->ReadTargets(problem, targets);
-  if (this->StoresFields && !targets.IsPerVertex())
-  {
-    this->BlendDragFields(targets, context);
-    return;
-  }
-  if (!this->IsFactorized)
+  const bool areFields = this->StoresFields && !targets.IsPerVertex();
+  if (!this->IsFactorized && !(areFields && this->DragFields.rows() > 0))
   {
     this->Factorize(*problem.Mesh, context);
   }
-  this->SolveColumns();
+  if (!areFields)
+  {
+    this->SolveColumns();
+    return;
+  }
+  if (this->DragFields.rows() == 0)
+  {
+    this->ComputeDragFields(problem);
+    this->ReleaseFactor(problem);
+  }
+  this->BlendDragFields(targets, context);
+}
+
+void GradientSystem::ReleaseFactor(const HandleProblem& problem)
+{
+  this->ReleasedFactorizations = this->GetNumberOfFactorizations();
+  this->System = AnchoredSystem(this->Backend, GradientLimits(problem));
+  this->IsFactorized = false;
+  ReturnFreedMemory();
 }
 
 void GradientSystem::ReadTargets(const HandleProblem& problem, const HandleTargets& targets)
