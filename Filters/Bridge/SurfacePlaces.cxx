@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Bridge/SurfacePlaces.h"
 
+#include "Kernel/Base/Error.h"
+
 #include "vtkCellArray.h"
 #include "vtkGenericCell.h"
 #include "vtkNew.h"
@@ -13,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace cartan
 {
@@ -81,6 +84,12 @@ FoundPlaces ClosestPlaces(const TriangleMesh& mesh, const Points& points, const 
     double squaredDistance = 0.0;
     locator->FindClosestPoint(
       queries.row(i).data(), closest.data(), cell, triangle, part, squaredDistance);
+    if (triangle < 0 || !std::isfinite(squaredDistance))
+    {
+      throw Error(ErrorCode::BadInput,
+        "No place on the source is closest to point " + std::to_string(i) + " of the target: " +
+          "none of the source's " + std::to_string(triangles.rows()) + " triangles has an area.");
+    }
     SurfacePlace& place = found.Places[i];
     const Eigen::RowVector3i corners = triangles.row(triangle);
     place.Corners = { corners[0], corners[1], corners[2] };

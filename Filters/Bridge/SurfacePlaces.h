@@ -5,7 +5,8 @@
 
 namespace cartan
 {
-/// The closest place on a surface for each query, and how far it is.
+/// The closest place on a surface for each query, and how far it is. Throws Error(BadInput)
+/// where no triangle has an area: there is none.
 struct FoundPlaces
 {
   std::vector<SurfacePlace> Places;

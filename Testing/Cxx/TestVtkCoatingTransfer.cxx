@@ -350,6 +350,18 @@ TEST_F(CoatingTransfer, CarriesArraysOver)
   }
 }
 
+TEST_F(CoatingTransfer, RefusesSourcesWithoutArea)
+{
+  shapes::Shape line;
+  line.Positions.resize(3, 3);
+  line.Positions << 0.1, 0.2, 0.3, 0.1, 0.2, 0.3, 0.7, 0.5, 0.4;
+  line.Faces.resize(1, 3);
+  line.Faces << 0, 1, 2;
+  this->Connect(line, line, line);
+  this->Filter->SetAlignmentToAsTheyLie();
+  this->ExpectError({ "none of the source's 1 triangles has an area" });
+}
+
 TEST_F(CoatingTransfer, SaysWhatDoesNotBelongTogether)
 {
   const shapes::Shape base = shapes::Icosphere(2);
