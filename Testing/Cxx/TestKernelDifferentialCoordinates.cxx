@@ -7,6 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+#include <utility>
+
 using cartan::AnchorMode;
 using cartan::DeltaNormalization;
 using cartan::DifferentialOperator;
@@ -254,6 +258,7 @@ TEST(DifferentialReconstruction, KeepsNoiseSmallerWithTheAnchorsOwnEquations)
       shapes::Random random(11);
       constexpr int Draws = 8;
       double squares = 0.0;
+      double least = std::numeric_limits<double>::infinity();
       for (int draw = 0; draw < Draws; ++draw)
       {
         Points noisy = deltas;
@@ -265,19 +270,22 @@ TEST(DifferentialReconstruction, KeepsNoiseSmallerWithTheAnchorsOwnEquations)
           RootMeanSquare(reconstruction.Reconstruct(noisy, PositionsOf(anchors, shape.Positions)) -
             shape.Positions);
         squares += rms * rms / Draws;
+        least = std::min(least, rms);
       }
-      shapes::ShowFigure(std::string(asked.Mesh) + " noise, anchors of kind " +
-          std::to_string(static_cast<int>(mode)),
-        std::sqrt(squares));
-      return std::sqrt(squares);
+      const std::string name = std::string(asked.Mesh) + " noise, anchors of kind " +
+        std::to_string(static_cast<int>(mode));
+      shapes::ShowFigure(name, std::sqrt(squares));
+      shapes::ShowFigure(name + ", least draw", least);
+      return std::pair<double, double>{ std::sqrt(squares), least };
     };
-    const double substituted = error(AnchorMode::Substituted);
+    const double substituted = error(AnchorMode::Substituted).first;
     // One draw differs from another by a fifth; the published ones are one each.
     EXPECT_GT(substituted, 0.8 * asked.Substituted);
     for (const AnchorMode mode : { AnchorMode::Hard, AnchorMode::Soft })
     {
-      const double kept = error(mode);
+      const auto [kept, least] = error(mode);
       EXPECT_LT(kept, 1.1 * asked.Kept);
+      EXPECT_LT(least, asked.Kept);
       EXPECT_LT(kept, 0.5 * substituted);
     }
   }
