@@ -66,7 +66,9 @@ public:
       point[2] = static_cast<Real>(positions[2] + origin[2]);
       // x - x is 0 unless x is infinite or NaN.
       isGood &= (point[0] - point[0]) + (point[1] - point[1]) + (point[2] - point[2]) == Real(0);
-      isGood &= (std::abs(x) <= farthest) & (std::abs(y) <= farthest) & (std::abs(z) <= farthest);
+      isGood &= std::abs(x) <= farthest;
+      isGood &= std::abs(y) <= farthest;
+      isGood &= std::abs(z) <= farthest;
     }
     return isGood;
   }

@@ -15,8 +15,6 @@ using Eigen::Vector3d;
 
 namespace
 {
-constexpr double Pi = shapes::Pi;
-
 Matrix3d RandomMatrix(shapes::Random& random)
 {
   Matrix3d matrix;
@@ -94,8 +92,9 @@ TEST(ClosestRotation, FromAGuessIsTheSame)
       const Matrix3d closest = ProjectOnRotations(matrix);
       for (const Matrix3d& guess :
         { closest, Matrix3d(closest * RotationFromVector(0.01 * Vector3d(random(), 1, 1))),
-          RandomRotation(random), Matrix3d(closest * RotationFromVector(Vector3d(Pi, 0, 0))),
-          Matrix3d(closest * RotationFromVector(Vector3d(0, 0, Pi))) })
+          RandomRotation(random),
+          Matrix3d(closest * RotationFromVector(Vector3d(shapes::Pi, 0, 0))),
+          Matrix3d(closest * RotationFromVector(Vector3d(0, 0, shapes::Pi))) })
       {
         const Matrix3d r = ProjectOnRotations(matrix, guess);
         ASSERT_LT((r.transpose() * r - Matrix3d::Identity()).norm(), 1e-13);
@@ -131,7 +130,7 @@ TEST(ClosestRotation, OfARotationIsItself)
     const Matrix3d r = RandomRotation(random);
     EXPECT_LT((ProjectOnRotations(r) - r).norm(), 3e-15);
     const Matrix3d halfTurn =
-      RotationFromVector(Pi * Vector3d{ random(), random(), random() }.normalized());
+      RotationFromVector(shapes::Pi * Vector3d{ random(), random(), random() }.normalized());
     EXPECT_LT((ProjectOnRotations(halfTurn) - halfTurn).norm(), 3e-15);
   }
   EXPECT_LT((ProjectOnRotations(Matrix3d::Identity()) - Matrix3d::Identity()).norm(), 1e-16);
@@ -267,7 +266,7 @@ TEST(RotationVector, AndBackForAllAngles)
 {
   shapes::Random random(7);
   for (const double angle : { 0.0, 1e-300, 1e-20, 1e-12, 1e-9, 1e-6, 1e-3, 0.5, 1.0, 2.0, 3.0,
-         Pi - 1e-3, Pi - 1e-6, Pi - 1e-9, Pi - 1e-12 })
+         shapes::Pi - 1e-3, shapes::Pi - 1e-6, shapes::Pi - 1e-9, shapes::Pi - 1e-12 })
   {
     for (int trial = 0; trial < 100; ++trial)
     {
@@ -285,24 +284,24 @@ TEST(RotationVector, OfHalfATurnIsOneOfTheTwoAxes)
   for (int trial = 0; trial < 200; ++trial)
   {
     const Vector3d axis = Vector3d{ random(), random(), random() }.normalized();
-    const Vector3d vector = VectorFromRotation(RotationFromVector(Pi * axis));
-    EXPECT_NEAR(vector.norm(), Pi, 1e-14);
-    EXPECT_NEAR(std::abs(vector.dot(axis)), Pi, 1e-14);
+    const Vector3d vector = VectorFromRotation(RotationFromVector(shapes::Pi * axis));
+    EXPECT_NEAR(vector.norm(), shapes::Pi, 1e-14);
+    EXPECT_NEAR(std::abs(vector.dot(axis)), shapes::Pi, 1e-14);
   }
   for (int k = 0; k < 3; ++k)
   {
     Matrix3d exact = -Matrix3d::Identity();
     exact(k, k) = 1.0;
     const Vector3d vector = VectorFromRotation(exact);
-    EXPECT_NEAR(std::abs(vector[k]), Pi, 1e-15);
-    EXPECT_NEAR(vector.norm(), Pi, 1e-15);
+    EXPECT_NEAR(std::abs(vector[k]), shapes::Pi, 1e-15);
+    EXPECT_NEAR(vector.norm(), shapes::Pi, 1e-15);
   }
   EXPECT_EQ(VectorFromRotation(Matrix3d::Identity()), Vector3d::Zero());
 }
 
 TEST(RotationVector, TurnsByTheRightHandRule)
 {
-  const Matrix3d quarter = RotationFromVector(Vector3d(0, 0, Pi / 2));
+  const Matrix3d quarter = RotationFromVector(Vector3d(0, 0, shapes::Pi / 2));
   EXPECT_LT((quarter * Vector3d::UnitX() - Vector3d::UnitY()).norm(), 1e-15);
   // The axis stays, and the turn is by <axis> x.
   const Vector3d axis = Vector3d(1, 2, -2) / 3.0;
@@ -317,7 +316,8 @@ TEST(RotationVector, MayExceedALap)
   for (const double angle : { 0.3, 2.0, -1.0 })
   {
     EXPECT_LT(
-      (RotationFromVector((angle + 6 * Pi) * axis) - RotationFromVector(angle * axis)).norm(),
+      (RotationFromVector((angle + 6 * shapes::Pi) * axis) - RotationFromVector(angle * axis))
+        .norm(),
       1e-14);
   }
 }
@@ -392,7 +392,7 @@ TEST(ClosestRotation, IsNearestToTheGuessWhereSeveralAreEquallyClose)
     const double agreement = (found.transpose() * guess).trace();
     for (int k = 0; k < 36; ++k)
     {
-      const Matrix3d turned = RotationFromVector(Pi / 18.0 * k * u) * found;
+      const Matrix3d turned = RotationFromVector(shapes::Pi / 18.0 * k * u) * found;
       EXPECT_LT((turned.transpose() * guess).trace(), agreement + 1e-9) << i << " " << k;
     }
   }
