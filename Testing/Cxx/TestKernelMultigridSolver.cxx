@@ -331,7 +331,8 @@ double Difference(const cartan::Points& a, const cartan::Points& b, const cartan
 TEST_F(MultigridSolver, DeformsByEachMethodAsTheDirectSolverOrIsRefused)
 {
   const std::set<std::string> served = { "RotationInvariant", "ShapePreserving", "PoissonHarmonic",
-    "PoissonGeodesic", "Multiresolution1", "Spokes", "SpokesAndRims", "SmoothedRotations" };
+    "PoissonGeodesic", "Multiresolution1", "Spokes", "SpokesAndRims", "SmoothedRotations",
+    "Pyramid" };
   const Shape shape = shapes::Noisy(shapes::Ellipsoid(4, { 2.0, 1.0, 0.7 }), 0.01);
   const cartan::HandleProblem problem = shapes::ProblemOf(shape, shapes::EndsAlong(shape, 0, 0.15));
   const Results direct = Deform(problem, SolverBackend::Eigen);
