@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Configures, builds and runs the benchmarks in build/benchmarks: similarity
 # editing, as-rigid-as-possible deformation, the methods of differential coordinates,
-# drags of large surfaces and their set-up, sewing, morphs, spectra and compressed files, each with a table
-# of what was asked and what was measured, then the motions of rotation-invariant and shape-preserving editing by
-# Google Benchmark, with such a table at the end. Arguments are Google Benchmark's, for
-# example --benchmark_filter=104K. Takes about ten minutes and means something
-# only on a machine that does nothing else.
+# drags of large surfaces and their set-up, sewing, morphs, spectra, compressed files and
+# surfaces in pieces, each with a table of what was asked and what was measured, then the
+# motions of rotation-invariant and shape-preserving editing by Google Benchmark, with such
+# a table at the end. Arguments are Google Benchmark's, for example
+# --benchmark_filter=104K. Takes tens of minutes and means something only on a machine
+# that does nothing else.
 #
 #     Utilities/benchmark.sh --against COMMIT
 #
