@@ -20,8 +20,7 @@ namespace
 /// all weights.
 constexpr double RegularMassFactor = 13.856406460551018;
 
-/// A connected part of the unknown vertices, with what its gradients see of the
-/// handles.
+/// A connected part of the unknown vertices, with what its gradients see of the handles.
 struct UnknownPart
 {
   std::vector<int> Vertices;
@@ -256,8 +255,7 @@ SparseRows<double> GradientSystem::ResidualRows(const TriangleMesh& mesh) const
   return residuals;
 }
 
-/// sum_i sum_j |M_i - M_j|^2 = sum_i M_i . 2 sum_j (M_i - M_j), as each pair
-/// occurs in both orders.
+/// sum_i sum_j |M_i - M_j|^2 = sum_i M_i . 2 sum_j (M_i - M_j), as pairs occur in both orders.
 SparseRows<Eigen::Vector3d> GradientSystem::DifferenceRows(const ExecutionContext& context) const
 {
   const RingGradients& gradients = *this->Gradients;
@@ -337,29 +335,25 @@ void GradientSystem::Solve(
 {
   this->ReadTargets(problem, targets);
   const bool areFields = this->StoresFields && !targets.IsPerVertex();
-  if (!this->IsFactorized && !(areFields && this->DragFields.rows() > 0))
+  const bool isBlended = areFields && this->DragFields.rows() > 0;
+  if (!isBlended && !this->IsFactorized)
   {
     this->Factorize(*problem.Mesh, context);
   }
   if (!areFields)
   {
-    this->SolveColumns();
-    return;
+    return this->SolveColumns();
   }
-  if (this->DragFields.rows() == 0)
+  if (!isBlended)
   {
     this->ComputeDragFields(problem);
-    this->ReleaseFactor(problem);
+    // Only targets vertex by vertex need the factor again.
+    this->ReleasedFactorizations = this->GetNumberOfFactorizations();
+    this->System = AnchoredSystem(this->Backend, GradientLimits(problem));
+    this->IsFactorized = false;
+    ReturnFreedMemory();
   }
   this->BlendDragFields(targets, context);
-}
-
-void GradientSystem::ReleaseFactor(const HandleProblem& problem)
-{
-  this->ReleasedFactorizations = this->GetNumberOfFactorizations();
-  this->System = AnchoredSystem(this->Backend, GradientLimits(problem));
-  this->IsFactorized = false;
-  ReturnFreedMemory();
 }
 
 void GradientSystem::ReadTargets(const HandleProblem& problem, const HandleTargets& targets)
@@ -397,8 +391,7 @@ void GradientSystem::ComputeDragFields(const HandleProblem& problem)
 {
   const RingGradients& gradients = *this->Gradients;
   const int numberOfMoving = static_cast<int>(problem.Moving.size());
-  // Handle k in its rest place and all others at the origin, then handle k all
-  // in one place.
+  // Handle k in its rest place and all others at the origin, then handle k all in one place.
   Field fields = Field::Zero(gradients.NumberOfColumns(), 4 * numberOfMoving);
   for (int column = 0; column < gradients.NumberOfPositions(); ++column)
   {

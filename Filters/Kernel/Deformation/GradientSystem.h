@@ -74,7 +74,6 @@ private:
   void ReadTargets(const HandleProblem& problem, const HandleTargets& targets);
   void SolveColumns();
   void ComputeDragFields(const HandleProblem& problem);
-  void ReleaseFactor(const HandleProblem& problem);
   void BlendDragFields(const HandleTargets& targets, const ExecutionContext& context);
 
   std::vector<int> MovingHandles;
