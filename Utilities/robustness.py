@@ -19,7 +19,7 @@ import subprocess
 import sys
 
 SECONDS = 60
-DEFORMATIONS = ("AsRigidAsPossible", "Laplacian", "Multiresolution", "Poisson",
+DEFORMATIONS = ("AsRigidAsPossible", "Laplacian", "Multiresolution", "Poisson", "Pyramid",
                 "RotationInvariant", "ShapePreserving", "Similarity")
 MORPHS = ("DiscreteForms", "Isometric", "DeformationGradient", "Linear")
 LAPLACIAN = ("DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",

@@ -20,7 +20,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkTrivialProducer
 
 import scan
 
-DEFORMATIONS = ("RotationInvariant", "ShapePreserving", "Poisson", "AsRigidAsPossible",
+DEFORMATIONS = ("RotationInvariant", "ShapePreserving", "Poisson", "AsRigidAsPossible", "Pyramid",
                 "Multiresolution", "Laplacian", "Similarity")
 
 

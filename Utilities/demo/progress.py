@@ -14,7 +14,7 @@ from vtkcartan import vtkHandleMotion
 
 import scan
 
-DEFORMATIONS = ("RotationInvariant", "ShapePreserving", "Poisson", "AsRigidAsPossible",
+DEFORMATIONS = ("RotationInvariant", "ShapePreserving", "Poisson", "AsRigidAsPossible", "Pyramid",
                 "Multiresolution", "Laplacian", "Similarity")
 
 
