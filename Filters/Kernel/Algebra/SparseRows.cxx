@@ -52,9 +52,9 @@ SparseMatrix MatrixOfRows(int size, const ExecutionContext& context,
   {
     SparseRows<double> rows;
     AppendRows(first, last, context, makeRange, rows);
-    const std::size_t count = static_cast<std::size_t>(entries) + rows.Entries.size();
-    matrix.data().reserve(static_cast<Eigen::Index>(ExpectedEntries(count, last, size)) - entries);
-    matrix.data().resize(static_cast<Eigen::Index>(count));
+    const std::size_t total = static_cast<std::size_t>(entries) + rows.Entries.size();
+    matrix.data().reserve(static_cast<Eigen::Index>(ExpectedEntries(total, last, size)) - entries);
+    matrix.data().resize(static_cast<Eigen::Index>(total));
     for (int row = first; row < last; ++row)
     {
       for (const auto* entry = rows.Begin(row - first); entry != rows.End(row - first); ++entry)
