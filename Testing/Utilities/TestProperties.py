@@ -98,8 +98,7 @@ class Panels(unittest.TestCase):
 
     def test_every_filter_has_an_icon(self):
         plugin = ROOT / "Plugin"
-        listed = {file.text for file in
-                  xml.etree.ElementTree.parse(plugin / "Icons.qrc").iter("file")}
+        listed = {"Icons/" + path.name for path in (plugin / "Icons").glob("*.svg")}
         used = set()
         for path in sorted(plugin.glob("*.xml")):
             for proxy in proxies(xml.etree.ElementTree.parse(path)):
