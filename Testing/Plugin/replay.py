@@ -19,10 +19,11 @@ folder, script = sys.argv[1:3]
 with open(os.path.join(folder, "replay.json"), encoding="utf-8") as file:
     saved = json.load(file)
 expected = numpy.load(os.path.join(folder, "points.npy"), allow_pickle=True)
-simple.LoadPlugin(cartan_testing.plugin_path(), remote=False)
 if script.endswith(".pvsm"):
+    simple.LoadPlugin(cartan_testing.plugin_path(), remote=False)
     simple.LoadState(os.path.join(folder, script))
 else:
+    # Scripts load the plugin by themselves.
     runpy.run_path(os.path.join(folder, script))
 source = simple.FindSource(saved["source"])
 source.UpdatePipeline()
