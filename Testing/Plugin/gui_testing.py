@@ -49,17 +49,27 @@ def points(name):
     return vtk_to_numpy(servermanager.Fetch(source).GetPoints().GetData()).copy()
 
 
-def shown(name):
-    """The points that the active view draws of a source."""
+def drawn_data(name):
+    """What the active view draws of a source; None if that is nothing."""
     for representation in simple.GetActiveView().Representations:
         if getattr(representation, "Input", None) == simple.FindSource(name):
             drawn = representation.SMProxy.GetClientSideObject().GetActiveRepresentation()
             data = drawn.GetRenderedDataObject(0)
             while data and data.IsA("vtkMultiBlockDataSet"):
                 data = data.GetBlock(0) if data.GetNumberOfBlocks() else None
-            has_points = data and data.GetNumberOfPoints()
-            return vtk_to_numpy(data.GetPoints().GetData()).copy() if has_points else None
+            return data if data and data.GetNumberOfPoints() else None
     return None
+
+
+def shown(name):
+    """The points that the active view draws of a source."""
+    data = drawn_data(name)
+    return vtk_to_numpy(data.GetPoints().GetData()).copy() if data else None
+
+
+def shown_array(name, array):
+    """The point array that the active view draws with a source."""
+    return vtk_to_numpy(drawn_data(name).GetPointData().GetArray(array)).copy()
 
 
 def open_scan(mesh):
