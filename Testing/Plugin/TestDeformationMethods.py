@@ -109,22 +109,28 @@ check_close(scales, [2, 2], "ScaleFactor")
 refresh(similarity)
 check(similarity.NumberOfFlatPoints > 0, "the bar's sides are flat")
 
-rigid = simple.AsRigidAsPossibleDeformation(Input=marked, GenerateRigidityEnergy=1)
-set_motion(rigid, 60, SHIFT)
-energies = []
-for iterations in (0, 4, 40):
-    rigid.MaximumIterations = iterations
-    output(rigid)
-    refresh(rigid)
-    check(rigid.NumberOfIterations <= iterations, "iterations")
-    energies.append(rigid.FinalEnergy)
-check(energies[0] > energies[1] >= energies[2], "energies %s" % energies)
-energy = vtk_to_numpy(output(rigid).GetPointData().GetArray("RigidityEnergy"))
-check_close(energy.sum() / energies[2], 1, "the sum of RigidityEnergy")
-for guess in ("Rest Shape", "Previous Result", "Rotation Invariant", "Shape Preserving"):
-    rigid.InitialGuess = guess
-    rigid.MaximumIterations = 2000
-    rigid.Tolerance = 1e-10
-    check(points_of(rigid).shape == rest.shape, guess)
-    refresh(rigid)
-    check_close(rigid.FinalEnergy / energies[2], 1, "the energy from " + guess, 0.05)
+# Those that iterate.
+for name, array in (("AsRigidAsPossibleDeformation", "RigidityEnergy"),
+                    ("PyramidDeformation", "PyramidEnergy")):
+    proxy = getattr(simple, name)(Input=marked)
+    check(proxy.GetClientSideObject().GetClassName() == "vtk" + name, name)
+    setattr(proxy, "Generate" + array, 1)
+    set_motion(proxy, 60, SHIFT)
+    energies = []
+    for iterations in (0, 4, 40):
+        proxy.MaximumIterations = iterations
+        output(proxy)
+        refresh(proxy)
+        check(proxy.NumberOfIterations <= iterations, name + ": iterations")
+        energies.append(proxy.FinalEnergy)
+    check(energies[0] > energies[1] >= energies[2], "%s: energies %s" % (name, energies))
+    energy = vtk_to_numpy(output(proxy).GetPointData().GetArray(array))
+    check_close(energy.sum() / energies[2], 1, "the sum of " + array)
+    for guess in ("Rest Shape", "Previous Result", "Rotation Invariant", "Shape Preserving"):
+        proxy.InitialGuess = guess
+        proxy.MaximumIterations = 2000
+        proxy.Tolerance = 1e-10
+        check(points_of(proxy).shape == rest.shape, name + ": " + guess)
+        refresh(proxy)
+        check_close(proxy.FinalEnergy / energies[2], 1,
+                    "%s: the energy from %s" % (name, guess), 0.05)

@@ -68,9 +68,11 @@ class Accessor(unittest.TestCase):
 
     def test_deforms_a_copy(self):
         before = self.mesh.points.copy()
-        bent = self.mesh.cartan.deform(self.handles, {1: self.motion})
-        expected = vtkcartan.deform(before, self.triangles, self.handles, {1: self.motion})
-        self.assertTrue((bent.points == expected).all())
+        for method in ("ShapePreserving", "Pyramid"):
+            bent = self.mesh.cartan.deform(self.handles, {1: self.motion}, method=method)
+            expected = vtkcartan.deform(before, self.triangles, self.handles, {1: self.motion},
+                                        method=method)
+            self.assertTrue((bent.points == expected).all(), method)
         self.assertTrue((self.mesh.points == before).all())
         self.assertIsInstance(bent, PolyData)
 

@@ -45,7 +45,7 @@ class Deform(unittest.TestCase):
         matrix = rigid(40, (1, 2, 3))
         expected = apply(matrix, self.points)
         for method in ("ShapePreserving", "RotationInvariant", "Similarity", "AsRigidAsPossible",
-                       "Laplacian", "Poisson", "Multiresolution"):
+                       "Pyramid", "Laplacian", "Poisson", "Multiresolution"):
             moved = deform(self.points, self.triangles, self.handles, {1: matrix, 2: matrix},
                            method=method)
             self.assertLess(abs(moved - expected).max(), 1e-9, method)
@@ -58,9 +58,11 @@ class Deform(unittest.TestCase):
         self.assertLess(abs(moved[landmarks] - targets).max(), 1e-12)
         # Landmarks that turn together take the surface with them.
         self.assertLess(abs(moved - apply(rigid(25), self.points)).max(), 1e-3)
-        moved = deform(self.points, self.triangles, {1: landmarks}, targets={1: targets},
-                       method="Similarity", ConstrainHandleTransforms=False)
-        self.assertLess(abs(moved - apply(rigid(25), self.points)).max(), 1e-9)
+        for method, properties in (("Similarity", {"ConstrainHandleTransforms": False}),
+                                   ("Pyramid", {})):
+            moved = deform(self.points, self.triangles, {1: landmarks}, targets={1: targets},
+                           method=method, **properties)
+            self.assertLess(abs(moved - apply(rigid(25), self.points)).max(), 1e-9, method)
 
     def test_targets_keep_the_order_of_the_ids(self):
         ids = numpy.array([7, 3, 300])
