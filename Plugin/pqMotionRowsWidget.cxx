@@ -4,6 +4,7 @@
 #include "pqCoreUtilities.h"
 #include "pqHandleMotions.h"
 #include "vtkCommand.h"
+#include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 
 #include <QHBoxLayout>
@@ -48,6 +49,9 @@ pqMotionRowsWidget::pqMotionRowsWidget(vtkSMProxy* proxy, vtkSMProperty* propert
   auto* layout = new QVBoxLayout(this);
   layout->setMargin(0);
   layout->setSpacing(2);
+  // Above instead of beside the table, whose numbers a narrow panel would hide.
+  this->setShowLabel(false);
+  layout->addWidget(new QLabel(property->GetXMLLabel(), this));
   layout->addWidget(this->Summary);
   layout->addWidget(this->Table);
   layout->addLayout(buttons);

@@ -60,6 +60,17 @@ def divide(layout, cell, count, vertically=True):
             + divide(layout, first + 1, count - half, not vertically))
 
 
+def look_as(before, view):
+    """Looks at what `view` shows from the direction of the render view `before`, if it is one."""
+    if before is not None and before.GetProperty("CameraViewUp"):
+        view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = (
+            list(before.CameraPosition), list(before.CameraFocalPoint), list(before.CameraViewUp))
+    else:
+        view.CameraPosition, view.CameraFocalPoint = [0.6, -1, 0.5], [0, 0, 0]
+        view.CameraViewUp = [0, 0, 1]
+    simple.ResetCamera(view)
+
+
 def compare_methods(source=None, methods=METHODS):
     """Deforms the input of `source`, a deformation (default: the active source), by each of
     `methods` with its motions, in linked views of a new layout, with the changes of edge
@@ -67,6 +78,7 @@ def compare_methods(source=None, methods=METHODS):
     source = source or simple.GetActiveSource()
     if not is_deformation(source):
         raise ValueError("Select a deformation of Cartan whose handles have moved, then compare.")
+    before = simple.GetActiveView()
     layout = simple.CreateLayout("Compare Methods")
     views = [simple.CreateRenderView(detachedFromLayout=True) for _ in methods]
     places = divide(layout, 0, len(views))
@@ -83,9 +95,7 @@ def compare_methods(source=None, methods=METHODS):
         results.append(result)
     for view in views[1:]:
         simple.AddCameraLink(views[0], view, "Compare Methods %d" % views.index(view))
-    views[0].CameraPosition, views[0].CameraFocalPoint = [0.6, -1, 0.5], [0, 0, 0]
-    views[0].CameraViewUp = [0, 0, 1]
-    simple.ResetCamera(views[0])
+    look_as(before, views[0])
     simple.RenderAllViews()
     simple.SetActiveSource(source)
     return results

@@ -12,6 +12,8 @@ bent.Motion = "Matrix"
 bent.Motion.Matrix = [0, 0, 1, 2, 0, 1, 0, 0, -1, 0, 0, 3, 0, 0, 0, 1]
 bent.MotionRows = [1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0.25, 0]
 
+shown = simple.CreateRenderView()
+shown.CameraPosition, shown.CameraFocalPoint, shown.CameraViewUp = [2, 9, 1], [2, 0, 1], [1, 0, 0]
 results = compare_methods(bent)
 check([result.GetXMLName() for result in results]
       == [method + "Deformation" for method in METHODS], "one filter per method")
@@ -29,6 +31,11 @@ layouts = [layout for (name, _), layout in simple.GetLayouts().items()
 check(len(layouts) == 1, "a layout")
 views = simple.GetViewsInLayout(layouts[0])
 check(len(views) == 4, "four views")
+for view in views:
+    check_close(view.CameraViewUp, [1, 0, 0], "seen as in the view before")
+    sight = [a - b for a, b in zip(view.CameraPosition, view.CameraFocalPoint)]
+    check_close([sight[0], sight[2]], [0, 0], "from the same side")
+    check(sight[1] > 0, "from the same side")
 views[0].CameraPosition = [9, 8, 7]
 views[0].SMProxy.UpdateVTKObjects()
 simple.Render(views[0])
