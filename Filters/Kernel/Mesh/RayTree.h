@@ -4,6 +4,7 @@
 #include "Base/ExecutionContext.h"
 #include "Base/Types.h"
 
+#include <array>
 #include <vector>
 
 namespace cartan
@@ -16,7 +17,8 @@ struct RayHit
 };
 
 /// Finds the first triangle that a ray meets: a tree of boxes over the
-/// triangles, each with half the triangles of its parent. No ray passes between
+/// triangles, each with a quarter of the triangles of its parent, so that a ray is tried against
+/// four boxes, or four triangles, at once. No ray passes between
 /// neighbors that share an edge or a vertex. It is immutable, so several
 /// threads may use it.
 class RayTree
@@ -33,20 +35,29 @@ public:
   RayHit FirstHit(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const;
 
 private:
+  static constexpr int Width = 4;
+  using Lanes = Eigen::Array<double, Width, 1>;
+
+  /// Up to four boxes below a box.
   struct Node
   {
-    Eigen::AlignedBox3d Box;
-    int First = 0; // the first triangle of a leaf, else the second child
-    int Count = 0; // triangles of a leaf, else 0: the first child is the next node
+    Lanes Low[3];                 // by axes; infinite where there is no child
+    Lanes High[3];                // as Low
+    std::array<int, Width> Child; // a node, or -1 - i of the i-th leaf
+  };
+  /// Up to four triangles.
+  struct Leaf
+  {
+    Lanes Corners[3][3];        // by corners and axes
+    std::array<int, Width> Ids; // -1 where there is no triangle
   };
   struct Ray;
+  struct Builder;
 
-  void Build(std::vector<Eigen::AlignedBox3d>& boxes, int begin, int end, double padding,
-    const ExecutionContext& context);
+  void MeetLeaf(const Ray& ray, const Leaf& leaf, RayHit& nearest) const;
 
-  Eigen::Vector3d Center;               // what the coordinates below are relative to
-  std::vector<Node> Nodes;              // those below a node follow it
-  std::vector<int> Ids;                 // of the triangles in the order of the leaves: #T
-  std::vector<Eigen::Matrix3d> Corners; // in the same order, a corner per column: #T
+  Eigen::Vector3d Center;  // what the coordinates below are relative to
+  std::vector<Node> Nodes; // the first one is above all others
+  std::vector<Leaf> Leaves;
 };
 }
