@@ -66,6 +66,62 @@ std::vector<SolverBackend> Backends()
   return backends;
 }
 
+/// Ranges in parts, the last one first.
+cartan::ExecutionContext Parts(int count)
+{
+  return { [count](int n, const cartan::ExecutionContext::Range& body)
+    {
+      for (int part = count - 1; part >= 0; --part)
+      {
+        const auto bound = [&](int i)
+        { return static_cast<int>(static_cast<long long>(n) * i / count); };
+        if (bound(part) < bound(part + 1))
+        {
+          body(bound(part), bound(part + 1));
+        }
+      }
+    },
+    nullptr };
+}
+
+TEST(CholeskyFactor, SolvesSubtreesSideBySideWithTheSameBitsForAnyThreads)
+{
+  // Large enough to be split. The second matrix is in two parts, one of them a single unknown.
+  SparseMatrix whole = Grid(160, 0.1, true);
+  for (const bool isInParts : { false, true })
+  {
+    for (int i = 0; isInParts && i < whole.rows(); ++i)
+    {
+      whole.coeffRef(i, 0) = whole.coeffRef(0, i) = i == 0 ? 2.0 : 0.0;
+    }
+    const SparseMatrix lower = SparseMatrix(whole.triangularView<Eigen::Lower>()).pruned();
+    for (const SolverBackend backend : Backends())
+    {
+      for (const bool isWide : { false, true })
+      {
+        FactorLimits limits;
+        limits.NarrowEntries = isWide ? 10 : limits.NarrowEntries;
+        const auto factor = cartan::MakeSymmetricSolver(backend, limits);
+        ASSERT_EQ(factor->Analyze(lower), SolverStatus::Ok);
+        ASSERT_EQ(factor->Factorize(lower), SolverStatus::Ok);
+        EXPECT_GT(factor->GetNumberOfEntries(), 400000);
+        for (const int columns : { 1, 2, 3, 4, 7 })
+        {
+          const Eigen::MatrixXd rightHandSide = Eigen::MatrixXd::Random(lower.rows(), columns);
+          ASSERT_EQ(factor->Solve(rightHandSide), SolverStatus::Ok);
+          const Eigen::MatrixXd solution = factor->GetSolution();
+          EXPECT_LT((whole * solution - rightHandSide).cwiseAbs().maxCoeff(), 1e-12);
+          for (const int threads : { 2, 3, 8 })
+          {
+            ASSERT_EQ(factor->Solve(rightHandSide, Parts(threads)), SolverStatus::Ok);
+            EXPECT_EQ(factor->GetSolution(), solution) << threads;
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(CholeskyFactor, SolvesWithNarrowAndWideIndicesForAnyNumberOfColumns)
 {
   const SparseMatrix lower = Grid(12, 0.1);

@@ -31,8 +31,13 @@ public:
     if (this->Count > 0)
     {
       const int column = (this->Count - 1) % Memory;
+      const int filled = std::min(this->Count, Memory);
       this->StepDifferences.col(column) = f - this->LastStep;
       this->ValueDifferences.col(column) = g - this->LastValue;
+      const Eigen::VectorXd products =
+        this->StepDifferences.leftCols(filled).transpose() * this->StepDifferences.col(column);
+      this->Products.col(column).head(filled) = products;
+      this->Products.row(column).head(filled) = products.transpose();
     }
     else
     {
@@ -48,7 +53,7 @@ public:
       return false;
     }
     const auto steps = this->StepDifferences.leftCols(used);
-    Eigen::MatrixXd gram = steps.transpose() * steps;
+    Eigen::MatrixXd gram = this->Products.topLeftCorner(used, used);
     gram.diagonal() *= 1.0 + this->Regularization;
     const Eigen::VectorXd factors = gram.ldlt().solve(steps.transpose() * f);
     if (!factors.allFinite())
@@ -67,6 +72,7 @@ private:
   int Count = 0;
   Eigen::MatrixXd StepDifferences;
   Eigen::MatrixXd ValueDifferences;
+  Eigen::Matrix<double, Memory, Memory> Products; ///< of the differences of steps
   Eigen::VectorXd LastStep;
   Eigen::VectorXd LastValue;
 };

@@ -2,6 +2,8 @@
 #include "Algebra/CholmodFactor.h"
 
 #ifdef CARTAN_HAVE_CHOLMOD
+#include "Algebra/TreeSubstitution.h"
+
 #include <cholmod.h>
 #ifdef CARTAN_HAVE_OPENMP
 #include <omp.h>
@@ -210,14 +212,22 @@ public:
     // Supernodes make the factorization fast, but the few right-hand sides of a
     // motion are solved twice as fast by the simplicial factor, which takes four
     // at a time through memory once. It is smaller, too.
-    return Api::ChangeFactor(CHOLMOD_REAL, 1, 0, 1, 1, this->Factors, &this->Common)
-      ? SolverStatus::Ok
-      : this->Status();
+    if (!Api::ChangeFactor(CHOLMOD_REAL, 1, 0, 1, 1, this->Factors, &this->Common))
+    {
+      return this->Status();
+    }
+    this->Substitution.Analyze(this->Columns());
+    return SolverStatus::Ok;
   }
 
   SolverStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
-    const ExecutionContext& /*context*/) override
+    const ExecutionContext& context) override
   {
+    if (this->Limits.Use == FactorUse::ManySolves)
+    {
+      this->Substitution.Solve(this->Columns(), rightHandSide, this->Solved, context);
+      return SolverStatus::Ok;
+    }
     cholmod_dense view = {};
     view.nrow = rightHandSide.rows();
     view.ncol = rightHandSide.cols();
@@ -226,7 +236,7 @@ public:
     view.x = const_cast<double*>(rightHandSide.data());
     view.xtype = CHOLMOD_REAL;
     view.dtype = CHOLMOD_DOUBLE;
-    // The work space is kept: a drag solves the same size again and again.
+    // The work space is kept for the next solve.
     const bool isSolved = Api::Solve(CHOLMOD_A, this->Factors, &view, nullptr, &this->Solution,
       nullptr, &this->Work, &this->WorkE, &this->Common);
     if (this->Limits.Use == FactorUse::OneSolve)
@@ -240,14 +250,30 @@ public:
 
   Eigen::Map<const Eigen::MatrixXd> GetSolution() const override
   {
+    if (this->Limits.Use == FactorUse::ManySolves)
+    {
+      return { this->Solved.data(), this->Solved.rows(), this->Solved.cols() };
+    }
     return { static_cast<const double*>(this->Solution->x),
       static_cast<Eigen::Index>(this->Solution->nrow),
       static_cast<Eigen::Index>(this->Solution->ncol) };
   }
   std::int64_t GetNumberOfEntries() const override { return this->Entries; }
-  std::size_t GetBytes() const override { return this->Common.memory_inuse; }
+  std::size_t GetBytes() const override
+  {
+    return this->Common.memory_inuse + TotalBytes(this->Solved) + this->Substitution.GetBytes();
+  }
 
 private:
+  /// The simplicial factor.
+  FactorColumns<typename Api::Index> Columns() const
+  {
+    using Index = typename Api::Index;
+    return { static_cast<Index>(this->Factors->n), static_cast<const Index*>(this->Factors->p),
+      static_cast<const Index*>(this->Factors->i), static_cast<const double*>(this->Factors->x),
+      static_cast<const Index*>(this->Factors->Perm) };
+  }
+
   /// The order of the unknowns by that of their groups: nested dissection (METIS), with half
   /// of the operations of AMD's order and four fifths of its entries, where that saves more
   /// than it takes. Of unknowns one by one it never does. Empty where there are no groups or
@@ -298,6 +324,8 @@ private:
   cholmod_common Common;
   cholmod_factor* Symbolic = nullptr;
   cholmod_factor* Factors = nullptr;
+  TreeSubstitution<typename Api::Index> Substitution;
+  Eigen::MatrixXd Solved;
   cholmod_dense* Solution = nullptr;
   cholmod_dense* Work = nullptr;
   cholmod_dense* WorkE = nullptr;
@@ -338,9 +366,9 @@ public:
   }
 
   SolverStatus Solve(const Eigen::Ref<const Eigen::MatrixXd>& rightHandSide,
-    const ExecutionContext& /*context*/) override
+    const ExecutionContext& context) override
   {
-    return this->Current->Solve(rightHandSide);
+    return this->Current->Solve(rightHandSide, context);
   }
   Eigen::Map<const Eigen::MatrixXd> GetSolution() const override
   {

@@ -60,6 +60,7 @@ AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, Rigi
   {
     this->Rest.row(i) = this->Problem.Rest->row(this->Cells.Vertices[i]);
   }
+  this->NegligibleEnergy = RoundingPart * this->Cells.EnergyOfVanishedEdges(this->Rest);
   this->Current = this->Rest;
   this->Rotations = Identities(this->Cells.NumberOfSites());
   this->CellEnergies.setZero(this->Cells.Count);
@@ -263,35 +264,42 @@ void AsRigidAsPossibleDeformer::Start(
 }
 
 /// L y = z for three values per cell, in the order of the cells.
-void AsRigidAsPossibleDeformer::SolveCells(
-  const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::VectorXd& solution)
+void AsRigidAsPossibleDeformer::SolveCells(const Eigen::Ref<const Eigen::VectorXd>& values,
+  Eigen::VectorXd& solution, const ExecutionContext& context)
 {
   const int numberOfUnknowns = this->System->NumberOfUnknowns();
   Eigen::MatrixXd rightHandSide(numberOfUnknowns, 3);
   // In the order of the system, whose columns lie far apart.
-  for (int i = 0; i < numberOfUnknowns; ++i)
-  {
-    rightHandSide.row(i) = values.segment<3>(3 * this->Cells.CellOfUnknown[i]);
-  }
-  const Eigen::Map<const Eigen::MatrixXd> solved = this->System->Solve(rightHandSide);
+  context.For(numberOfUnknowns,
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        rightHandSide.row(i) = values.segment<3>(3 * this->Cells.CellOfUnknown[i]);
+      }
+    });
+  const Eigen::Map<const Eigen::MatrixXd> solved = this->System->Solve(rightHandSide, context);
   solution.resize(3 * numberOfUnknowns);
-  for (int i = 0; i < numberOfUnknowns; ++i)
-  {
-    solution.segment<3>(3 * this->Cells.CellOfUnknown[i]) = solved.row(i);
-  }
+  context.For(numberOfUnknowns,
+    [&](int begin, int end)
+    {
+      for (int i = begin; i < end; ++i)
+      {
+        solution.segment<3>(3 * this->Cells.CellOfUnknown[i]) = solved.row(i);
+      }
+    });
 }
 
 /// L step = b - L x.
-void AsRigidAsPossibleDeformer::SolveStep(Eigen::VectorXd& step)
+void AsRigidAsPossibleDeformer::SolveStep(Eigen::VectorXd& step, const ExecutionContext& context)
 {
   this->SolveCells(
-    Eigen::Map<const Eigen::VectorXd>(this->Forces.data(), this->Forces.size()), step);
+    Eigen::Map<const Eigen::VectorXd>(this->Forces.data(), this->Forces.size()), step, context);
 }
 
 bool AsRigidAsPossibleDeformer::HasSettled(double before, double after) const
 {
-  const double negligible = RoundingPart * this->Cells.EnergyOfVanishedEdges(this->Rest);
-  return before - after <= this->Tolerance * (std::abs(after) + negligible);
+  return before - after <= this->Tolerance * (std::abs(after) + this->NegligibleEnergy);
 }
 
 void AsRigidAsPossibleDeformer::WarnIfUnsettled(const Eigen::VectorXd& step)
@@ -354,9 +362,10 @@ void AsRigidAsPossibleDeformer::Alternate(
   while (!this->Converged && this->GetNumberOfIterations() < this->MaximumIterations)
   {
     const int iteration = this->GetNumberOfIterations();
-    context.Report(0.1 + 0.85 * iteration / this->MaximumIterations);
+    const double progress = 0.1 + 0.85 * iteration / this->MaximumIterations;
+    context.Report(progress);
     const double before = this->Energies.back();
-    this->SolveStep(step);
+    this->SolveStep(step, context.Part(progress, progress));
     // E has the second derivatives 4 L and the gradient -4 (b - L x).
     this->Residual =
       2.0 * step.dot(Eigen::Map<const Eigen::VectorXd>(this->Forces.data(), step.size())) / before;

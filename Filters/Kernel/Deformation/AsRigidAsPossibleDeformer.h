@@ -134,8 +134,9 @@ private:
   double BendingFactor() const { return this->AreCoupled ? this->Bending * this->FreeArea : 0.0; }
   void Start(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
-  void SolveCells(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::VectorXd& solution);
-  void SolveStep(Eigen::VectorXd& step);
+  void SolveCells(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::VectorXd& solution,
+    const ExecutionContext& context);
+  void SolveStep(Eigen::VectorXd& step, const ExecutionContext& context);
   bool HasSettled(double before, double after) const;
   void Alternate(
     const HandleTargets& targets, Eigen::VectorXd& step, const ExecutionContext& context);
@@ -164,6 +165,7 @@ private:
   std::vector<char> HoldsRotation;   // #cells
   std::vector<int> MovingHandles;    // #V, index in Moving or -1
   double FreeArea = 0.0;
+  double NegligibleEnergy = 0.0; // rounding makes as much
 
   Points Rest;                  // #sites x 3
   Points Current;               // #sites x 3

@@ -77,7 +77,7 @@ void AsRigidAsPossibleDeformer::SlopeOfTurns(
       }
     });
   Eigen::VectorXd unknowns;
-  this->SolveCells(slope, unknowns);
+  this->SolveCells(slope, unknowns, {});
   solved.head(3 * numberOfUnknowns) = unknowns / coupling;
   for (int cell = 0; cell < numberOfUnknowns; ++cell)
   {
@@ -103,7 +103,7 @@ double AsRigidAsPossibleDeformer::Turn(double t, const Eigen::VectorXd& directio
       }
     });
   const double energy = this->SumEnergies(targets, context);
-  this->SolveStep(step);
+  this->SolveStep(step, {});
   Eigen::Map<Eigen::VectorXd>(this->Current.data(), step.size()) += step;
   return energy -
     2.0 * step.dot(Eigen::Map<const Eigen::VectorXd>(this->Forces.data(), step.size()));

@@ -231,8 +231,10 @@ void TurnTable::Fill(
       this->RightHandSide(
         offsets, coefficients.col(first + m).data(), 3 * m, rightHandSide, context);
     }
+    const double done = 0.1 + 0.9 * static_cast<double>(first) / numberOfModes;
     this->Fields.middleCols(3 * first, 3 * count) =
-      this->System->Solve(rightHandSide.leftCols(3 * count)).cast<float>();
+      this->System->Solve(rightHandSide.leftCols(3 * count), context.Part(done, done))
+        .cast<float>();
     context.Report(0.1 + 0.9 * static_cast<double>(first + count) / numberOfModes);
   }
 }

@@ -76,7 +76,7 @@ Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionCont
           rightHandSide.row(v) = sum.transpose();
         }
       });
-    this->System.Solve(rightHandSide, centers);
+    this->System.Solve(rightHandSide, centers, context.Part(0.5, 0.9));
   }
   context.Report(1.0);
   return this->Sum(current, centers);
