@@ -10,13 +10,14 @@
  * that half of a bend by 90 degrees is one by 45.
  *
  * Input 0: the surface at rest with handles (see vtkSurfaceDeformation). Input 1: the
- * examples, a connection for each, with the points and cells of input 0. Where they lie
- * and how they are turned does not matter. Output: the surface, with the field data array
- * `ExampleWeights`, a double for each example: all 0 is the rest pose, a single 1 that
- * example.
+ * examples, a connection for each, or time steps of one (ExamplesOverTime), with the points
+ * and cells of input 0. Where they lie and how they are turned does not matter. Output: the
+ * surface, with the field data array `ExampleWeights`, a double for each example: all 0 is the rest
+ * pose, a single 1 that example.
  *
  * Only the positions of handles count. With ConstrainHandlePositions off there is an
- * error; others: no example, or one of other points or cells. An example counts where it
+ * error; others: no example, or one of other points or cells; with ExamplesOverTime, several
+ * connections, or times that do not increase. An example counts where it
  * differs from the rest pose by turns below 180 degrees from triangle to triangle.
  *
  * References: Sumner, Zwicker, Gotsman, Popovic, Mesh-based Inverse Kinematics, ACM
@@ -45,11 +46,22 @@ public:
 
   ///@{
   /**
-   * The examples on port 1.
+   * The examples on port 1. A simulation's time steps are examples with ExamplesOverTime.
    */
   void AddExampleData(vtkPolyData* example);
   void AddExampleConnection(vtkAlgorithmOutput* example) { this->AddInputConnection(1, example); }
   void RemoveAllExamples() { this->SetInputConnection(1, nullptr); }
+  ///@}
+
+  ///@{
+  /**
+   * Whether the time steps of the one surface on port 1 are the examples, instead of the
+   * surfaces there at the time of the update. Steps are read once, until the input changes.
+   * Default: off.
+   */
+  vtkSetMacro(ExamplesOverTime, bool);
+  vtkGetMacro(ExamplesOverTime, bool);
+  vtkBooleanMacro(ExamplesOverTime, bool);
   ///@}
 
   ///@{
@@ -65,11 +77,41 @@ public:
 
   ///@{
   /**
-   * Between the pose of the examples, 0, and vtkShapePreservingDeformation without volume
-   * correction, 1: the edges that both fit are blended. Default: 0.
+   * Between the pose of the examples, 0, and the result of RigidMethod, 1: positions are
+   * blended. Default: 0.
    */
   vtkSetClampMacro(Rigidness, double, 0.0, 1.0);
   vtkGetMacro(Rigidness, double);
+  ///@}
+
+  enum RigidMethodType
+  {
+    ROTATION_INVARIANT = 0,
+    SHAPE_PRESERVING = 1,
+    SIMILARITY = 2,
+    LAPLACIAN = 3,
+    MULTIRESOLUTION = 4,
+    POISSON = 5,
+    AS_RIGID_AS_POSSIBLE = 6,
+    PYRAMID = 7
+  };
+
+  ///@{
+  /**
+   * The method that Rigidness leads to, with the defaults of its filter, but without volume
+   * correction, and for what the examples need: targets of points turn nothing, motions do. It
+   * is prepared when it is first needed. Default: SHAPE_PRESERVING.
+   */
+  vtkSetClampMacro(RigidMethod, int, ROTATION_INVARIANT, PYRAMID);
+  vtkGetMacro(RigidMethod, int);
+  void SetRigidMethodToRotationInvariant() { this->SetRigidMethod(ROTATION_INVARIANT); }
+  void SetRigidMethodToShapePreserving() { this->SetRigidMethod(SHAPE_PRESERVING); }
+  void SetRigidMethodToSimilarity() { this->SetRigidMethod(SIMILARITY); }
+  void SetRigidMethodToLaplacian() { this->SetRigidMethod(LAPLACIAN); }
+  void SetRigidMethodToMultiresolution() { this->SetRigidMethod(MULTIRESOLUTION); }
+  void SetRigidMethodToPoisson() { this->SetRigidMethod(POISSON); }
+  void SetRigidMethodToAsRigidAsPossible() { this->SetRigidMethod(AS_RIGID_AS_POSSIBLE); }
+  void SetRigidMethodToPyramid() { this->SetRigidMethod(PYRAMID); }
   ///@}
 
   ///@{
@@ -109,6 +151,14 @@ protected:
   ~vtkExampleBasedDeformation() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  void FollowFirstRank(
+    vtkInformation* request, vtkInformationVector** inputVector, bool hasEnded) override;
   void Execute(cartan::FilterRun& run) override;
   void ForgetResults() override;
   cartan::DeformationMethod NewMethod(const cartan::HandleProblem& problem,
@@ -119,9 +169,13 @@ protected:
 private:
   class Internals;
 
+  bool CollectExamples(cartan::FilterRun& run);
+
   std::unique_ptr<Internals> Own;
+  bool ExamplesOverTime = false;
   bool WarmStart = false;
   double Rigidness = 0.0;
+  int RigidMethod = SHAPE_PRESERVING;
   int MaximumIterations = 30;
   double Tolerance = 1e-6;
   double SpanDistance = 0.0;

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Configures, builds and runs the benchmarks in build/benchmarks: similarity
 # editing, as-rigid-as-possible deformation, the methods of differential coordinates,
-# drags of large surfaces and their set-up, sewing, morphs, spectra, compressed files and
-# surfaces in pieces, each with a table of what was asked and what was measured, then the
-# motions of rotation-invariant and shape-preserving editing by Google Benchmark, with such
-# a table at the end. Arguments are Google Benchmark's, for example
+# drags of large surfaces and their set-up, drags by example poses, sewing, morphs, spectra,
+# compressed files and surfaces in pieces, each with a table of what was asked and what was
+# measured, then the motions of rotation-invariant and shape-preserving editing by Google
+# Benchmark, with such a table at the end. Arguments are Google Benchmark's, for example
 # --benchmark_filter=104K. Takes tens of minutes and means something only on a machine
 # that does nothing else.
 #
@@ -39,6 +39,7 @@ build/benchmarks/bin/CartanBenchmarkAsRigidAsPossible
 build/benchmarks/bin/CartanBenchmarkDifferential
 build/benchmarks/bin/CartanBenchmarkDrag
 build/benchmarks/bin/CartanBenchmarkSetUp
+OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkExamples
 OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkMerge
 build/benchmarks/bin/CartanBenchmarkMorph
 OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkSpectrum

@@ -204,6 +204,7 @@ inline Subject ExampleBased()
       Number<Filter>(&Filter::SetRigidness, { 0.0, 0.4 }),
       Number<Filter>(&Filter::SetTolerance, { 1e-6, 1e-2 }) }));
 }
+      Enumeration<Filter>(8, &Filter::SetRigidMethod), Switch<Filter>(&Filter::SetExamplesOverTime),
 
 inline std::vector<Subject> DeformationSubjects()
 {

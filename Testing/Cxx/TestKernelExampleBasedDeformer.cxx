@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Deformation/ExampleBasedDeformer.h"
+#include "Kernel/Deformation/ShapePreservingDeformer.h"
 
 #include "AdviceWords.h"
 #include "HandleShapes.h"
@@ -244,7 +245,14 @@ TEST(ExampleBasedDeformer, StartsFromTheLastMotionWhenWarm)
   EXPECT_EQ(warm.GetNumberOfFactorizations(), 1);
 }
 
-TEST(ExampleBasedDeformer, BlendsWithShapePreservingByRigidness)
+std::unique_ptr<cartan::SurfaceDeformer> NewShapePreserving(
+  const HandleProblem& problem, const cartan::ExecutionContext& context)
+{
+  return std::make_unique<cartan::ShapePreservingDeformer>(
+    problem, cartan::SolverBackend::Automatic, context);
+}
+
+TEST(ExampleBasedDeformer, BlendsWithAnotherMethodByRigidness)
 {
   const Shape bar = Bar();
   const HandleProblem problem = Problem(bar);
@@ -255,14 +263,14 @@ TEST(ExampleBasedDeformer, BlendsWithShapePreservingByRigidness)
   motion.Linear = cartan::RotationFromVector(motion.RotationVector);
   ExampleBasedDeformer deformer(problem, { Pose(bar, -90.0) });
   const Points span = Deform(deformer, targets).Positions;
-  deformer.SetRigidness(1.0);
+  deformer.SetRigidness(1.0, NewShapePreserving);
   const Points rigid = Deform(deformer, targets).Positions;
   cartan::ShapePreservingDeformer other(problem);
   DeformedSurface expected;
   other.Deform(targets, false, expected, {});
   EXPECT_LT(Distance(rigid, expected.Positions), 1e-12);
   EXPECT_GT(Distance(span, rigid), 1e-3);
-  deformer.SetRigidness(0.25);
+  deformer.SetRigidness(0.25, NewShapePreserving);
   const Points between = 0.75 * span + 0.25 * rigid;
   EXPECT_LT(Distance(Deform(deformer, targets).Positions, between), 1e-12);
   EXPECT_EQ(deformer.GetNumberOfFactorizations(), 2);

@@ -2,7 +2,15 @@
 #include "Advice.h"
 #include "TimeSource.h"
 
+#include "vtkAsRigidAsPossibleDeformation.h"
 #include "vtkExampleBasedDeformation.h"
+#include "vtkLaplacianDeformation.h"
+#include "vtkMultiresolutionDeformation.h"
+#include "vtkPoissonDeformation.h"
+#include "vtkPyramidDeformation.h"
+#include "vtkRotationInvariantDeformation.h"
+#include "vtkShapePreservingDeformation.h"
+#include "vtkSimilarityDeformation.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -117,6 +125,101 @@ TEST(ExampleBasedDeformation, PutsWeightsIntoChartsOverTime)
       EXPECT_NEAR(weight->GetTuple1(0), step == k + 1 ? 1.0 : 0.0, 1e-6) << k << ' ' << step;
     }
   }
+}
+
+/// What the filters of RigidMethodType give for the same handles.
+std::vector<vtkSmartPointer<vtkSurfaceDeformation>> RigidFilters()
+{
+  vtkNew<vtkSimilarityDeformation> similarity;
+  similarity->ConstrainHandleTransformsOn();
+  vtkNew<vtkShapePreservingDeformation> shape;
+  shape->SetVolumeCorrectionToNone();
+  return { vtkNew<vtkRotationInvariantDeformation>(), shape, similarity,
+    vtkNew<vtkLaplacianDeformation>(), vtkNew<vtkMultiresolutionDeformation>(),
+    vtkNew<vtkPoissonDeformation>(), vtkNew<vtkAsRigidAsPossibleDeformation>(),
+    vtkNew<vtkPyramidDeformation>() };
+}
+
+TEST(ExampleBasedDeformation, BlendsWithEachRigidMethod)
+{
+  const auto bar = vtktest::MakePolyData(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 }));
+  vtktest::MarkEnds(bar, 0.6, 3.4);
+  Advised<vtkExampleBasedDeformation> filter;
+  filter->SetInputData(bar);
+  filter->AddExampleData(Bent(bar, 1.2));
+  filter->SetHandleMotion(2, vtktest::Turn(30.0));
+  EXPECT_EQ(filter->GetRigidMethod(), vtkExampleBasedDeformation::SHAPE_PRESERVING);
+  const auto span = vtktest::PointsOf(filter.Works());
+  const auto others = RigidFilters();
+  for (int method = 0; method < static_cast<int>(others.size()); ++method)
+  {
+    vtkSurfaceDeformation* other = others[static_cast<std::size_t>(method)];
+    other->SetInputData(bar);
+    other->SetHandleMotion(2, vtktest::Turn(30.0));
+    other->Update();
+    const auto rigid = vtktest::PointsOf(other->GetOutput());
+    filter->SetRigidMethod(method);
+    for (const double part : { 1.0, 0.3 })
+    {
+      filter->SetRigidness(part);
+      const auto blended = vtktest::PointsOf(filter.Works());
+      EXPECT_LT((blended - (1.0 - part) * span - part * rigid).cwiseAbs().maxCoeff(), 1e-9)
+        << method << ' ' << part;
+    }
+    EXPECT_GT((rigid - span).cwiseAbs().maxCoeff(), 1e-3) << method;
+  }
+}
+
+TEST(ExampleBasedDeformation, TakesTimeStepsAsExamples)
+{
+  const auto bar = vtktest::MakePolyData(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 }));
+  vtktest::MarkEnds(bar, 0.6, 3.4);
+  const std::vector<vtkSmartPointer<vtkPolyData>> poses{ Bent(bar, 1.2), Bent(bar, -0.5),
+    Bent(bar, 0.7) };
+  vtkNew<vtktest::TimeSource> source;
+  source->SetSteps({ 0.5, 2.0, 3.0 }, poses);
+  Advised<vtkExampleBasedDeformation> filter;
+  filter->SetInputData(bar);
+  filter->AddExampleConnection(source->GetOutputPort());
+  filter->ExamplesOverTimeOn();
+  filter->SetHandleMotion(2, vtktest::Turn(20.0));
+  const auto overTime = vtktest::PointsOf(filter.Works());
+  ASSERT_EQ(filter->GetExampleWeights()->GetNumberOfTuples(), 3);
+  EXPECT_EQ(source->Requests, (std::vector<double>{ 0.5, 2.0, 3.0 }));
+  Advised<vtkExampleBasedDeformation> several;
+  several->SetInputData(bar);
+  for (const auto& pose : poses)
+  {
+    several->AddExampleData(pose);
+  }
+  several->SetHandleMotion(2, vtktest::Turn(20.0));
+  EXPECT_EQ(vtktest::PointsOf(several.Works()), overTime);
+  // A drag reads no step again, and a new input all of them.
+  filter->SetHandleMotion(2, vtktest::Turn(25.0));
+  filter.Works();
+  EXPECT_EQ(source->Requests.size(), 3u);
+  source->SetSteps({ 0.0, 1.0 }, { poses[1], poses[0] });
+  filter.Works();
+  EXPECT_EQ(source->Requests.size(), 5u);
+  EXPECT_EQ(filter->GetExampleWeights()->GetNumberOfTuples(), 2);
+  // Bad input, and what to do.
+  filter->AddExampleData(poses[0]);
+  filter.Refuses({ "there are 2 surfaces",
+    Advice("connect one with time steps, or turn "
+           "ExamplesOverTime off.") });
+  filter->ExamplesOverTimeOff();
+  filter->RemoveAllExamples();
+  filter->AddExampleData(poses[0]);
+  filter.Works();
+  filter->ExamplesOverTimeOn();
+  filter.Works();
+  EXPECT_EQ(filter->GetExampleWeights()->GetNumberOfTuples(), 1);
+  source->SetSteps({ 0.0, 2.0, 1.0 }, poses);
+  filter->RemoveAllExamples();
+  filter->AddExampleConnection(source->GetOutputPort());
+  filter.Refuses({ "time step 2 is at 1", Advice("Give each time once, in increasing order.") });
+  source->SetSteps({ 0.0, 1.0, 2.0 }, poses);
+  filter.Works();
 }
 
 TEST(ExampleBasedDeformation, NeedsExamplesOfTheSameCells)

@@ -33,6 +33,7 @@ Parameters ExampleParameters()
     Make("Rigidness", &Class::SetRigidness, Real(0.0, 1.0)),
     Make("MaximumIterations", &Class::SetMaximumIterations, Integer(0, 20)) };
 }
+    Make("RigidMethod", &Class::SetRigidMethod, Integer(0, 7)),
 
 Parameters LandmarkParameters()
 {

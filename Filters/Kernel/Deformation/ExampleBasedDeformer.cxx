@@ -70,7 +70,6 @@ ExampleBasedDeformer::ExampleBasedDeformer(HandleProblem problem,
       context.Part(0.0, 0.5))
   , Span(this->Problem, this->System.Triangles(this->Problem), examples)
   , MovingHandles(MovingHandleOfVertices(this->Problem))
-  , Backend(backend)
   , Weights(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(examples.size())))
 {
   context.Report(1.0);
@@ -86,10 +85,13 @@ std::size_t ExampleBasedDeformer::GetBytes() const
 
 std::string ExampleBasedDeformer::GetWarning() const
 {
-  return this->Converged || this->MaximumIterations == 0
-    ? std::string()
-    : "The weights of the examples have not settled after " + std::to_string(this->Iterations) +
+  if (!this->Converged && this->MaximumIterations > 0)
+  {
+    return "The weights of the examples have not settled after " +
+      std::to_string(this->Iterations) +
       " iterations: raise MaximumIterations, or move the handles less far from the examples.";
+  }
+  return this->Rigidness > 0.0 && this->Rigid ? this->Rigid->GetWarning() : std::string();
 }
 
 /// L h = 0 on unknowns, with the handles at `positions` (#V x 3).
@@ -293,8 +295,7 @@ void ExampleBasedDeformer::BlendWithRigid(
 {
   if (!this->Rigid)
   {
-    this->Rigid = std::make_unique<ShapePreservingDeformer>(
-      this->Problem, this->Backend, context.Part(0.0, 0.6));
+    this->Rigid = this->MakeRigid(this->Problem, context.Part(0.0, 0.6));
   }
   DeformedSurface rigid;
   this->Rigid->Deform(targets, result.Transforms.rows() > 0, rigid, context.Part(0.6, 1.0));

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "Deformation/ExampleSpan.h"
-#include "Deformation/ShapePreservingDeformer.h"
+#include "Deformation/HandleLaplacian.h"
+#include "Deformation/SurfaceDeformer.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -50,10 +52,19 @@ public:
   /// Whether to start from the last motion's weights. Default: off.
   void SetWarmStart(bool warm) { this->IsWarm = warm; }
 
-  /// How rigid the result is, 0 to 1: the part of ShapePreservingDeformer's result in the
-  /// positions, the rest is that of the examples. Both fit edges by the same matrix, so this
-  /// blends the edges that they fit. Needs one more factorization. Default: 0.
-  void SetRigidness(double part) { this->Rigidness = part; }
+  /// Makes another deformer for a problem.
+  using MakeDeformer =
+    std::function<std::unique_ptr<SurfaceDeformer>(const HandleProblem&, const ExecutionContext&)>;
+
+  /// How rigid the result is, 0 to 1: the part of another method's result in the positions,
+  /// the rest is that of the examples. `make` is called when it is first needed; that of
+  /// ShapePreservingDeformer or PoissonDeformer fits edges by the same matrix, so these are
+  /// blended in the edges that they fit. Default: 0.
+  void SetRigidness(double part, MakeDeformer make)
+  {
+    this->Rigidness = part;
+    this->MakeRigid = std::move(make);
+  }
 
   /// Of the last motion: w, #examples; sqrt(E / E(x = 0)), how far the result is from the
   /// span; the number of steps; and whether they ended below the tolerance.
@@ -96,8 +107,8 @@ private:
   double Tolerance = 1e-6;
   bool IsWarm = false;
   double Rigidness = 0.0;
-  SolverBackend Backend;
-  std::unique_ptr<ShapePreservingDeformer> Rigid; // empty until first needed
+  MakeDeformer MakeRigid;
+  std::unique_ptr<SurfaceDeformer> Rigid; // empty until first needed
 
   Points Harmonic;    // h, #locals x 3
   Points SoftTargets; // #unknowns x 3, of those held softly
