@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkCurveDeformation.h"
 
+#include "Bridge/CarryingMethod.h"
 #include "Bridge/CurveReader.h"
 #include "Bridge/FilterRun.h"
 #include "Bridge/HandleArrays.h"
@@ -9,13 +10,9 @@
 #include "Bridge/PreparedSurface.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Base/Constants.h"
+#include "Kernel/Deformation/CurveDeltas.h"
 #include "Kernel/Deformation/CurveMatch.h"
 #include "Kernel/Deformation/JoinedVertices.h"
-#include "Kernel/Deformation/LaplacianDeformer.h"
-#include "Kernel/Deformation/MultiresolutionDeformer.h"
-#include "Kernel/Deformation/RotationInvariantDeformer.h"
-#include "Kernel/Deformation/ShapePreservingDeformer.h"
-#include "Kernel/Deformation/SimilarityDeformer.h"
 #include "Kernel/Deformation/SliverRemoval.h"
 #include "Kernel/Mesh/EdgePaths.h"
 #include "Kernel/Mesh/GeodesicDistance.h"
@@ -74,33 +71,9 @@ cartan::Points Rows(const cartan::Points& points, const std::vector<int>& ids)
   return rows;
 }
 
-std::unique_ptr<cartan::SurfaceDeformer> NewDeformer(int method, bool curveRotations,
-  const cartan::HandleProblem& problem, const cartan::ExecutionContext& context)
-{
-  const auto backend = cartan::SolverBackend::Automatic;
-  switch (method)
-  {
-    case vtkCurveDeformation::SHAPE_PRESERVING:
-      return std::make_unique<cartan::ShapePreservingDeformer>(problem, backend, context);
-    case vtkCurveDeformation::SIMILARITY:
-    {
-      cartan::SimilarityDeformer::Options options;
-      options.ConstrainTransforms = curveRotations;
-      return std::make_unique<cartan::SimilarityDeformer>(problem, options, backend, context);
-    }
-    case vtkCurveDeformation::LAPLACIAN:
-      return std::make_unique<cartan::LaplacianDeformer>(
-        problem, cartan::LaplacianRotations::Estimated, backend, context);
-    case vtkCurveDeformation::MULTIRESOLUTION:
-      return std::make_unique<cartan::MultiresolutionDeformer>(problem, 2, backend, context);
-    default:
-      return std::make_unique<cartan::RotationInvariantDeformer>(problem, backend, context);
-  }
-}
-
 /// The keys of a target whose points are `curve`, in the order of the target.
 std::vector<cartan::CurveKey> ReadKeys(vtkPolyData* target, const std::string& name,
-  const std::vector<vtkIdType>& curve, const std::vector<int>& path)
+  const std::vector<vtkIdType>& curve, const std::vector<int>& path, bool isClosed)
 {
   std::vector<cartan::CurveKey> keys;
   if (!target->GetPointData()->HasArray(name.c_str()))
@@ -127,7 +100,7 @@ std::vector<cartan::CurveKey> ReadKeys(vtkPolyData* target, const std::string& n
     // Ends belong together anyway.
     const bool isFirst = key.Source == 0 && key.Target == 0;
     const bool isLast = at + 1 == path.end() && i + 1 == curve.size();
-    if (!isFirst && !isLast)
+    if (isClosed || (!isFirst && !isLast))
     {
       keys.push_back(key);
     }
@@ -149,6 +122,7 @@ void vtkCurveDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "ViewDirection: " << this->ViewDirection[0] << " " << this->ViewDirection[1]
      << " " << this->ViewDirection[2] << "\n";
+  os << indent << "ClosedCurve: " << this->ClosedCurve << "\n";
   os << indent << "ReverseTarget: " << this->ReverseTarget << "\n";
   os << indent << "KeyArrayName: " << this->KeyArrayName << "\n";
   os << indent << "HandleArrayName: " << this->HandleArrayName << "\n";
@@ -158,6 +132,8 @@ void vtkCurveDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "CurveRotations: " << this->CurveRotations << "\n";
   os << indent << "RidgeHeight: " << this->RidgeHeight << "\n";
   os << indent << "RidgeWidth: " << this->RidgeWidth << "\n";
+  os << indent << "RidgeScale: " << this->RidgeScale << "\n";
+  os << indent << "RidgeTurn: " << this->RidgeTurn << "\n";
   os << indent << "SharpRidge: " << this->SharpRidge << "\n";
   os << indent << "NumberOfCurvePoints: " << this->NumberOfCurvePoints << "\n";
   os << indent << "LargestDistance: " << this->LargestDistance << "\n";
@@ -222,15 +198,18 @@ std::vector<int> vtkCurveDeformation::FindPath(const cartan::Surface& surface) c
   const cartan::Points& points = *surface.Positions;
   cartan::RequirePointIds(this->PointIds, mesh.NumberOfVertices());
   const std::vector<int> picks(this->PointIds.begin(), this->PointIds.end());
-  if (picks.size() < 2)
+  const bool isRingThroughOne = this->ClosedCurve && picks.size() == 1 &&
+    (this->Source == FEATURE_EDGES || this->Source == SILHOUETTE);
+  if (picks.size() < 2 && !isRingThroughOne)
   {
     throw Error(ErrorCode::BadInput,
       "The source curve needs two PointIds or more, but there are " + std::to_string(picks.size()) +
-        ": add the points that it starts and ends at.");
+        (this->ClosedCurve ? ": add points around it, three or more."
+                           : ": add the points that it starts and ends at."));
   }
   if (this->Source == SELECTED_POINTS)
   {
-    return cartan::ChainVertices(mesh, picks);
+    return cartan::ChainVertices(mesh, picks, this->ClosedCurve);
   }
   cartan::EdgeMask allowed;
   if (this->Source == FEATURE_EDGES)
@@ -241,7 +220,8 @@ std::vector<int> vtkCurveDeformation::FindPath(const cartan::Surface& surface) c
   {
     allowed = cartan::SilhouetteEdges(mesh, points, Eigen::Vector3d(this->ViewDirection));
   }
-  return cartan::PathThrough(mesh, points, picks, allowed);
+  return isRingThroughOne ? cartan::RingThrough(mesh, points, picks[0], allowed)
+                          : cartan::PathThrough(mesh, points, picks, allowed, this->ClosedCurve);
 }
 
 vtkCurveDeformation::Curves vtkCurveDeformation::ReadCurves(
@@ -255,8 +235,8 @@ vtkCurveDeformation::Curves vtkCurveDeformation::ReadCurves(
   {
     return curves;
   }
-  std::vector<vtkIdType> ids = cartan::ReadCurve(target);
-  if (this->ReverseTarget)
+  std::vector<vtkIdType> ids = cartan::ReadCurve(target, this->ClosedCurve);
+  if (this->ReverseTarget && !this->ClosedCurve)
   {
     std::reverse(ids.begin(), ids.end());
   }
@@ -266,7 +246,7 @@ vtkCurveDeformation::Curves vtkCurveDeformation::ReadCurves(
     line.row(static_cast<Eigen::Index>(i)) =
       Eigen::Vector3d(target->GetPoint(ids[i])).transpose() - surface.Origin.transpose();
   }
-  cartan::RequireSimpleCurve(line, "target curve");
+  cartan::RequireSimpleCurve(line, "target curve", this->ClosedCurve);
   const double size = cartan::BoundingDiagonal(*surface.Positions, surface.Mesh->GetTriangles());
   const double distance = line.rowwise().norm().maxCoeff();
   if (!(distance <= FarSizes * size))
@@ -275,15 +255,18 @@ vtkCurveDeformation::Curves vtkCurveDeformation::ReadCurves(
       "The target curve is up to " + std::to_string(distance / size) +
         " times the surface's size away from it: move or scale it to the surface (Transform).");
   }
-  if (this->Source == SELECTED_POINTS &&
+  if (this->Source == SELECTED_POINTS && !this->ClosedCurve &&
     (curves.Source.row(0) - line.row(0)).norm() >
       (curves.Source.row(curves.Source.rows() - 1) - line.row(0)).norm())
   {
     std::reverse(curves.Path.begin(), curves.Path.end());
     curves.Source = Rows(*surface.Positions, curves.Path);
   }
-  curves.Goals = cartan::MatchCurves(
-    curves.Source, line, ReadKeys(target, this->KeyArrayName, ids, curves.Path));
+  const std::vector<cartan::CurveKey> keys =
+    ReadKeys(target, this->KeyArrayName, ids, curves.Path, this->ClosedCurve);
+  curves.Goals = this->ClosedCurve
+    ? cartan::MatchClosedCurves(curves.Source, line, keys, this->ReverseTarget)
+    : cartan::MatchCurves(curves.Source, line, keys);
   if ((curves.Goals - curves.Source).rowwise().norm().maxCoeff() <= StillPart * size)
   {
     curves.Goals = curves.Source;
@@ -357,23 +340,30 @@ void vtkCurveDeformation::Deform(
     [&]
     {
       auto fresh = std::make_unique<CurvePreparation>();
-      fresh->Deformer = NewDeformer(this->Method, this->CurveRotations,
+      fresh->Deformer = cartan::NewCarryingDeformer(
+        static_cast<cartan::CarryingMethod>(this->Method), this->CurveRotations,
         cartan::WithJoinedVertices(cartan::WithoutSlivers(problem, run.Context().Part(0.2, 0.25))),
-        run.Context().Part(0.25, 0.7));
+        cartan::SolverBackend::Automatic, run.Context().Part(0.25, 0.7));
       return fresh;
     });
-  const cartan::HandleTargets targets =
-    cartan::CurveTargets(problem, curves.Path, curves.Goals, this->CurveRotations);
+  const cartan::HandleTargets targets = cartan::CurveTargets(
+    problem, curves.Path, curves.Goals, this->CurveRotations, this->ClosedCurve);
   cartan::DeformedSurface result;
-  prepared->Deformer->Deform(targets, false, result, run.Context().Part(0.7, 0.9));
+  prepared->Deformer->Deform(targets, false, result, run.Context().Part(0.7, 0.8));
   run.Warn(prepared->Deformer->GetWarning());
   curves.Deformed = std::move(result.Positions);
   this->LargestDistance =
     (Rows(curves.Deformed, curves.Path) - curves.Goals).rowwise().norm().maxCoeff();
 }
 
-/// x += h p(d / w) n for the distance d from the curve at rest.
-void vtkCurveDeformation::RaiseRidge(const cartan::Surface& surface, Curves& curves) const
+bool vtkCurveDeformation::HasRidge() const
+{
+  return this->RidgeHeight != 0.0 || this->RidgeScale != 1.0 || this->RidgeTurn != 0.0;
+}
+
+/// Deltas, then x += h p(d / w) n for the distance d from the curve at rest.
+void vtkCurveDeformation::RaiseRidge(
+  cartan::FilterRun& run, const cartan::Surface& surface, Curves& curves) const
 {
   const Eigen::VectorXd lengths = cartan::ArcLengths(curves.Source);
   const double width = this->RidgeWidth > 0.0
@@ -381,6 +371,17 @@ void vtkCurveDeformation::RaiseRidge(const cartan::Surface& surface, Curves& cur
     : 5.0 * lengths[lengths.size() - 1] / static_cast<double>(lengths.size() - 1);
   const Eigen::VectorXd distances =
     cartan::GeodesicDistance(*surface.Mesh, *surface.Positions, curves.Path, width);
+  if (this->RidgeScale != 1.0 || this->RidgeTurn != 0.0)
+  {
+    const cartan::CurveDeltas deltas = { this->RidgeScale, this->RidgeTurn * cartan::Pi / 180.0,
+      width, this->SharpRidge };
+    curves.Deformed = cartan::DeformByCurveDeltas(*surface.Mesh, curves.Deformed, curves.Path,
+      this->ClosedCurve, distances, deltas, run.Context().Part(0.8, 0.9));
+  }
+  if (this->RidgeHeight == 0.0)
+  {
+    return;
+  }
   const cartan::Points normals = cartan::VertexNormals(*surface.Mesh, curves.Deformed);
   for (Eigen::Index v = 0; v < distances.size(); ++v)
   {
@@ -397,7 +398,7 @@ void vtkCurveDeformation::Execute(cartan::FilterRun& run)
 {
   const auto surface = run.ReadSurface();
   Curves curves = this->ReadCurves(run, *surface);
-  if (curves.Goals.rows() == 0 && this->RidgeHeight == 0.0)
+  if (curves.Goals.rows() == 0 && !this->HasRidge())
   {
     throw Error(ErrorCode::BadInput,
       "There is no target curve and no ridge: connect a line to port 1, or set RidgeHeight.");
@@ -407,9 +408,9 @@ void vtkCurveDeformation::Execute(cartan::FilterRun& run)
   {
     this->Deform(run, surface, curves);
   }
-  if (this->RidgeHeight != 0.0)
+  if (this->HasRidge())
   {
-    this->RaiseRidge(*surface, curves);
+    this->RaiseRidge(run, *surface, curves);
   }
   this->NumberOfCurvePoints = static_cast<int>(curves.Path.size());
   run.Warn(cartan::WriteSurface(

@@ -4,21 +4,23 @@
  * @brief deforms a surface so that a curve on it follows a curve that was drawn
  *
  * Sketch-based editing: the *source curve* is a path along edges of the surface, the
- * *target curve* on port 1 an open line, such as a polyline or a spline. Each point of the
+ * *target curve* on port 1 a line, such as a polyline or a spline. Each point of the
  * source curve goes to the place of the target that has the same part of the length,
  * between the ends and between keys; the rest of the surface follows by one of the linear
  * methods. Points of handles (HandleArrayName) and points beyond Reach are pinned.
  *
  * Without a target curve the surface is not deformed. In both cases a ridge or a ravine
- * can be raised along the source curve (RidgeHeight).
+ * can be raised along the source curve, to a height (RidgeHeight) or by scaling and turning
+ * the differential coordinates beside it (RidgeScale, RidgeTurn).
  *
  * Input 0: the surface. Input 1, optional: the target curve, with a point array of keys
  * if there are some (KeyArrayName). Output: the deformed surface.
  *
  * Errors, each with an empty output: no path, or points that are not a line of edges; a
- * target that is empty, branches, closes, crosses itself, or is farther from the surface
- * than 10 times its size; keys that are not on the source curve or run in another order;
- * and what vtkSurfaceDeformation refuses. PrepareInput is an error.
+ * target that is empty, branches, closes (without ClosedCurve), crosses itself, or is farther
+ * from the surface than 10 times its size; keys that are not on the source curve or run in
+ * another order; deltas that change in all of a part; and what vtkSurfaceDeformation refuses.
+ * PrepareInput is an error.
  *
  * Reference: Nealen et al., A Sketch-Based Interface for Detail-Preserving Mesh Editing,
  * ACM SIGGRAPH 2005. Sorkine, Differential Representations for Mesh Processing, Computer
@@ -117,7 +119,22 @@ public:
 
   ///@{
   /**
-   * Whether the target curve runs from its last point to its first. Default: off.
+   * Whether both curves are rings. The source curve goes on from its last point to its first:
+   * three PointIds or more around it; one of FEATURE_EDGES or SILHOUETTE takes the shortest
+   * ring of such edges through it, the contour of a part; SELECTED_POINTS form a ring. The
+   * target is a ring, or a line whose ends are joined. Its start is where the source's first
+   * point is nearest, once both have one center and length, or a key; it runs the way on which
+   * points move less, or as three keys tell. Default: off.
+   */
+  vtkSetMacro(ClosedCurve, bool);
+  vtkGetMacro(ClosedCurve, bool);
+  vtkBooleanMacro(ClosedCurve, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the target curve runs from its last point to its first; with ClosedCurve, the
+   * other way round. Default: off.
    */
   vtkSetMacro(ReverseTarget, bool);
   vtkGetMacro(ReverseTarget, bool);
@@ -208,6 +225,26 @@ public:
 
   ///@{
   /**
+   * By which factor the differential coordinates of the deformed surface beside the source
+   * curve grow, before RidgeHeight: above 1 a ridge where the surface is convex, a ravine where
+   * it is concave; 0 flat; negative the other way. With SharpRidge those on the curve alone.
+   * They vanish in flat places, which stay. Default: 1.
+   */
+  vtkSetClampMacro(RidgeScale, double, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX);
+  vtkGetMacro(RidgeScale, double);
+  ///@}
+
+  ///@{
+  /**
+   * By which angle they turn about the tangents of the curve, in degrees: the surface leans
+   * to one side, as for suggestive contours. Default: 0.
+   */
+  vtkSetClampMacro(RidgeTurn, double, -180.0, 180.0);
+  vtkGetMacro(RidgeTurn, double);
+  ///@}
+
+  ///@{
+  /**
    * How far the ridge reaches to each side along the surface, in length units. 0: five
    * times the mean length of the source curve's edges. Default: 0.
    */
@@ -254,7 +291,8 @@ private:
     cartan::FilterRun& run, const cartan::Surface& surface, const std::vector<int>& path) const;
   void Deform(
     cartan::FilterRun& run, const std::shared_ptr<const cartan::Surface>& surface, Curves& curves);
-  void RaiseRidge(const cartan::Surface& surface, Curves& curves) const;
+  bool HasRidge() const;
+  void RaiseRidge(cartan::FilterRun& run, const cartan::Surface& surface, Curves& curves) const;
 
   std::vector<vtkIdType> PointIds;
   std::string KeyArrayName = "SourcePoint";
@@ -265,10 +303,13 @@ private:
   double Fidelity = 1.0;
   double RidgeHeight = 0.0;
   double RidgeWidth = 0.0;
+  double RidgeScale = 1.0;
+  double RidgeTurn = 0.0;
   double LargestDistance = 0.0;
   int Source = SHORTEST_PATH;
   int Method = ROTATION_INVARIANT;
   int NumberOfCurvePoints = 0;
+  bool ClosedCurve = false;
   bool ReverseTarget = false;
   bool CurveRotations = true;
   bool SharpRidge = false;

@@ -178,6 +178,8 @@ inline Subject Curve()
       Number<Filter>(&Filter::SetRidgeHeight, { 0.0, 0.1 }),
       Number<Filter>(&Filter::SetRidgeWidth, { 0.0, 0.7 }), Switch<Filter>(&Filter::SetSharpRidge),
       Switch<Filter>(&Filter::SetReverseTarget), Switch<Filter>(&Filter::SetCurveRotations),
+      Switch<Filter>(&Filter::SetClosedCurve), Number<Filter>(&Filter::SetRidgeScale, { 1.0, 1.5 }),
+      Number<Filter>(&Filter::SetRidgeTurn, { 0.0, 30.0 }),
       Name<Filter>(&Filter::SetHandleArrayName, { "Handle", "None", "Weight" }) });
 }
 
@@ -202,9 +204,9 @@ inline Subject ExampleBased()
     DeformationChoices<Filter>({ examples,
       Of<Filter>(2, [](Filter* f, int value) { f->SetMaximumIterations(20 - 10 * value); }),
       Number<Filter>(&Filter::SetRigidness, { 0.0, 0.4 }),
+      Enumeration<Filter>(8, &Filter::SetRigidMethod), Switch<Filter>(&Filter::SetExamplesOverTime),
       Number<Filter>(&Filter::SetTolerance, { 1e-6, 1e-2 }) }));
 }
-      Enumeration<Filter>(8, &Filter::SetRigidMethod), Switch<Filter>(&Filter::SetExamplesOverTime),
 
 inline std::vector<Subject> DeformationSubjects()
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Advice.h"
+#include "CurveLines.h"
 
 #include "vtkCurveDeformation.h"
 
@@ -7,6 +8,9 @@ namespace
 {
 using vtktest::Advice;
 using vtktest::Advised;
+using vtktest::Line;
+using vtktest::PlacesOf;
+using vtktest::SetPointIds;
 
 constexpr int Count = 12;
 
@@ -23,22 +27,6 @@ int Id(int x, int y)
   return y * (Count + 1) + x;
 }
 
-vtkSmartPointer<vtkPolyData> Line(const cartan::Points& points)
-{
-  auto line = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> places;
-  places->SetDataTypeToDouble();
-  vtkNew<vtkCellArray> lines;
-  lines->InsertNextCell(static_cast<int>(points.rows()));
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-  {
-    lines->InsertCellPoint(places->InsertNextPoint(points.row(i).data()));
-  }
-  line->SetPoints(places);
-  line->SetLines(lines);
-  return line;
-}
-
 /// The row of points from (x1, y) to (x2, y).
 std::vector<vtkIdType> Row(int x1, int x2, int y)
 {
@@ -48,25 +36,6 @@ std::vector<vtkIdType> Row(int x1, int x2, int y)
     ids.push_back(Id(x, y));
   }
   return ids;
-}
-
-cartan::Points PlacesOf(vtkPolyData* surface, const std::vector<vtkIdType>& ids)
-{
-  cartan::Points places(static_cast<Eigen::Index>(ids.size()), 3);
-  for (Eigen::Index i = 0; i < places.rows(); ++i)
-  {
-    surface->GetPoint(ids[i], places.row(i).data());
-  }
-  return places;
-}
-
-void SetPoints(vtkCurveDeformation* filter, const std::vector<vtkIdType>& ids)
-{
-  filter->SetNumberOfPointIds(static_cast<int>(ids.size()));
-  for (std::size_t i = 0; i < ids.size(); ++i)
-  {
-    filter->SetPointId(static_cast<int>(i), ids[i]);
-  }
 }
 
 /// The middle row of the sheet, whose border is pinned.
@@ -81,7 +50,7 @@ struct Sketch
       { return std::max(std::abs(p.x()), std::abs(p.y())) > 1.9 ? 1 : 0; });
     this->Filter->SetInputData(this->Surface);
     this->Filter->SetSourceToSelectedPoints();
-    SetPoints(this->Filter.Get(), this->Path);
+    SetPointIds(this->Filter.Get(), this->Path);
   }
 
   cartan::Points Rest() const { return PlacesOf(this->Surface, this->Path); }
@@ -167,7 +136,7 @@ TEST(CurveDeformation, ReversedTargetsAndKeysAreFollowed)
   const cartan::Points lifted = sketch.Rest().rowwise() + Eigen::RowVector3d(0.0, 0.0, 0.3);
   const cartan::Points backward = lifted.colwise().reverse();
   sketch.Filter->SetSourceToShortestPath();
-  SetPoints(sketch.Filter.Get(), { sketch.Path.front(), sketch.Path.back() });
+  SetPointIds(sketch.Filter.Get(), { sketch.Path.front(), sketch.Path.back() });
   sketch.SetTarget(backward);
   sketch.Filter->ReverseTargetOn();
   const auto result = sketch.Filter.Works();
@@ -175,7 +144,7 @@ TEST(CurveDeformation, ReversedTargetsAndKeysAreFollowed)
   // The second point goes to the target's middle.
   sketch.Filter->ReverseTargetOff();
   sketch.Filter->SetSourceToSelectedPoints();
-  SetPoints(sketch.Filter.Get(), sketch.Path);
+  SetPointIds(sketch.Filter.Get(), sketch.Path);
   const auto target = Line(lifted);
   vtktest::AddArray(target, "SourcePoint", 1,
     [&](vtkIdType i, double* key) { *key = i == 3 ? static_cast<double>(sketch.Path[1]) : -1.0; });
@@ -207,7 +176,7 @@ TEST(CurveDeformation, RidgesHaveTheirHeightAndWidth)
   const auto plane = vtktest::MakePolyData(shapes::Plane(40, 4.0));
   Advised<vtkCurveDeformation> filter;
   filter->SetInputData(plane);
-  SetPoints(filter.Get(), { 20 * 41, 20 * 41 + 40 }); // along y = 0
+  SetPointIds(filter.Get(), { 20 * 41, 20 * 41 + 40 }); // along y = 0
   filter->SetRidgeWidth(0.5);
   for (const bool isSharp : { false, true })
   {
@@ -230,7 +199,7 @@ TEST(CurveDeformation, PathsFollowFeaturesAndOutlines)
   filter->SetInputData(bar);
   filter->SetRidgeHeight(0.01);
   // Beside a long edge, on a face.
-  SetPoints(filter.Get(), { bar->FindPoint(0.5, 0.25, 0.5), bar->FindPoint(0.5, 0.25, 3.5) });
+  SetPointIds(filter.Get(), { bar->FindPoint(0.5, 0.25, 0.5), bar->FindPoint(0.5, 0.25, 3.5) });
   filter.Works();
   EXPECT_EQ(filter->GetNumberOfCurvePoints(), 13);
   filter->SetSourceToFeatureEdges();
@@ -261,25 +230,25 @@ TEST(CurveDeformation, NeedsAPathAndSomethingToDo)
   filter.Works();
 
   filter->SetSourceToShortestPath();
-  SetPoints(filter.Get(), { Id(3, 6) });
+  SetPointIds(filter.Get(), { Id(3, 6) });
   filter.Refuses({ "there are 1", Advice("add the points that it starts and ends at.") });
-  SetPoints(filter.Get(), { Id(3, 6), Id(9, 6) });
+  SetPointIds(filter.Get(), { Id(3, 6), Id(9, 6) });
   filter.Works();
 
-  SetPoints(filter.Get(), { Id(3, 6), Id(9, 6), Id(5, 6) });
+  SetPointIds(filter.Get(), { Id(3, 6), Id(9, 6), Id(5, 6) });
   filter.Refuses({ Advice("choose PointIds in the order of a curve that does not cross itself.") });
-  SetPoints(filter.Get(), { Id(3, 6), Id(5, 6), Id(9, 6) });
+  SetPointIds(filter.Get(), { Id(3, 6), Id(5, 6), Id(9, 6) });
   filter.Works();
 
   filter->SetSourceToSelectedPoints();
-  SetPoints(filter.Get(), { Id(3, 6), Id(9, 6) });
+  SetPointIds(filter.Get(), { Id(3, 6), Id(9, 6) });
   filter.Refuses({ "2 selected points",
     Advice("Select the points of one line, or set Source to "
            "the shortest path between points of it in their "
            "order.") });
   filter->SetSourceToShortestPath();
   filter.Works();
-  SetPoints(filter.Get(), { Id(3, 6), 4711 });
+  SetPointIds(filter.Get(), { Id(3, 6), 4711 });
   filter.Refuses({ "4711" });
 }
 
@@ -302,7 +271,7 @@ TEST(CurveDeformation, TargetsAreOneOpenLineNearTheSurface)
   filter->SetTargetData(two);
   filter.Refuses({ "its 2 lines",
     Advice("Connect one open line, such as a part of it from "
-           "Extract Cells.") });
+           "Extract Cells, or turn ClosedCurve on for a ring.") });
   two->GetLines()->Initialize();
   two->GetLines()->InsertNextCell({ 8, 7 });
   two->Modified();

@@ -23,6 +23,8 @@ Parameters CurveParameters()
     Make("Reach", &Class::SetReach, Length(1e-1, 2.0), Kind::Scalar, 1),
     Make("RidgeHeight", &Class::SetRidgeHeight, Length(1e-3, 1e-1), Kind::Scalar, 1),
     Make("RidgeWidth", &Class::SetRidgeWidth, Length(1e-2, 1.0), Kind::Scalar, 1),
+    Make("RidgeScale", &Class::SetRidgeScale, Real(0.0, 3.0)),
+    Make("RidgeTurn", &Class::SetRidgeTurn, Real(-90.0, 90.0)),
     Make("SharpRidge", &Class::SetSharpRidge, Flag()) };
 }
 
@@ -31,9 +33,9 @@ Parameters ExampleParameters()
   using Class = vtkExampleBasedDeformation;
   return { Make("WarmStart", &Class::SetWarmStart, Flag()),
     Make("Rigidness", &Class::SetRigidness, Real(0.0, 1.0)),
+    Make("RigidMethod", &Class::SetRigidMethod, Integer(0, 7)),
     Make("MaximumIterations", &Class::SetMaximumIterations, Integer(0, 20)) };
 }
-    Make("RigidMethod", &Class::SetRigidMethod, Integer(0, 7)),
 
 Parameters LandmarkParameters()
 {

@@ -7,6 +7,7 @@
 #include <Eigen/SVD>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace cartan
@@ -44,10 +45,11 @@ double SegmentDistance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const
 }
 
 /// Central differences, one-sided at the ends; zero where points coincide.
-Eigen::Vector3d Tangent(const Points& curve, Eigen::Index i)
+Eigen::Vector3d Tangent(const Points& curve, Eigen::Index i, bool isClosed)
 {
-  const Eigen::Index next = std::min(i + 1, curve.rows() - 1);
-  const Eigen::Index before = std::max<Eigen::Index>(i - 1, 0);
+  const Eigen::Index last = curve.rows() - 1;
+  const Eigen::Index next = i < last ? i + 1 : isClosed ? 0 : last;
+  const Eigen::Index before = i > 0 ? i - 1 : isClosed ? last : 0;
   return (curve.row(next) - curve.row(before)).transpose();
 }
 
@@ -58,6 +60,58 @@ Eigen::Matrix3d LeastRotation(const Eigen::Vector3d& from, const Eigen::Vector3d
     return Eigen::Matrix3d::Identity();
   }
   return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+/// The first point again at the end.
+Points Closed(const Points& curve)
+{
+  Points closed(curve.rows() + 1, 3);
+  closed << curve, curve.row(0);
+  return closed;
+}
+
+/// The ring from one of its points on.
+Points StartedAt(const Points& ring, int first)
+{
+  const Eigen::Index tail = ring.rows() - first;
+  Points started(ring.rows(), 3);
+  started << ring.bottomRows(tail), ring.topRows(first);
+  return started;
+}
+
+Points Backward(const Points& ring)
+{
+  Points backward = ring.colwise().reverse();
+  return backward;
+}
+
+/// The ring from its place nearest to x on, which becomes a point of it.
+Points StartedNear(const Points& ring, const Eigen::RowVector3d& x)
+{
+  Eigen::Index segment = 0;
+  Eigen::RowVector3d place = ring.row(0);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < ring.rows(); ++i)
+  {
+    const Eigen::RowVector3d start = ring.row(i);
+    const Eigen::RowVector3d edge = ring.row((i + 1) % ring.rows()) - start;
+    const double t = edge.isZero(0.0) ? 0.0 : Clamp((x - start).dot(edge) / edge.squaredNorm());
+    const Eigen::RowVector3d there = start + t * edge;
+    if ((there - x).norm() < nearest)
+    {
+      nearest = (there - x).norm();
+      segment = i;
+      place = there;
+    }
+  }
+  const auto next = static_cast<int>((segment + 1) % ring.rows());
+  if (place == ring.row(segment) || place == ring.row(next))
+  {
+    return StartedAt(ring, place == ring.row(next) ? next : static_cast<int>(segment));
+  }
+  Points started(ring.rows() + 1, 3);
+  started << place, StartedAt(ring, next);
+  return started;
 }
 
 /// Of all points (Kabsch, A Solution for the Best Rotation to Relate Two Sets of Vectors,
@@ -88,8 +142,9 @@ Eigen::VectorXd ArcLengths(const Points& curve)
   return lengths;
 }
 
-void RequireSimpleCurve(const Points& curve, const std::string& role)
+void RequireSimpleCurve(const Points& ofCurve, const std::string& role, bool isClosed)
 {
+  const Points curve = isClosed ? Closed(ofCurve) : ofCurve;
   const auto count = static_cast<int>(curve.rows()) - 1;
   const double length = count > 0 ? ArcLengths(curve)[count] : 0.0;
   if (!(length > 0.0))
@@ -111,7 +166,8 @@ void RequireSimpleCurve(const Points& curve, const std::string& role)
     for (int b = a + 1; b < count && low(order[b]) <= high(i) + touching; ++b)
     {
       const int j = order[b];
-      if (std::abs(i - j) > 1 &&
+      const bool areNeighbors = std::abs(i - j) <= 1 || (isClosed && std::abs(i - j) == count - 1);
+      if (!areNeighbors &&
         SegmentDistance(curve.row(i), curve.row(i + 1), curve.row(j), curve.row(j + 1)) <= touching)
       {
         crossings.Add(std::min(i, j));
@@ -165,22 +221,65 @@ Points MatchCurves(const Points& source, const Points& target, std::vector<Curve
   return matched;
 }
 
-Points CurveRotations(const Points& source, const Points& moved)
+Points MatchClosedCurves(
+  const Points& source, const Points& target, const std::vector<CurveKey>& keys, bool isReversed)
+{
+  const auto sourceSize = static_cast<int>(source.rows());
+  const auto targetSize = static_cast<int>(target.rows());
+  // From the first key or place on, with the other keys in between.
+  const int start = keys.empty() ? 0 : keys[0].Source;
+  const Points from = Closed(StartedAt(source, start));
+  const double scale = ArcLengths(Closed(target))[targetSize] / ArcLengths(from)[sourceSize];
+  const auto match = [&](bool isBackward)
+  {
+    const Points way = isBackward ? Backward(target) : target;
+    const auto place = [&](int i) { return isBackward ? targetSize - 1 - i : i; };
+    std::vector<CurveKey> between;
+    Points to;
+    if (keys.empty())
+    {
+      to = StartedNear(
+        way, target.colwise().mean() + scale * (source.row(0) - source.colwise().mean()));
+    }
+    else
+    {
+      const int first = place(keys[0].Target);
+      to = StartedAt(way, first);
+      for (std::size_t k = 1; k < keys.size(); ++k)
+      {
+        between.push_back({ (keys[k].Source - start + sourceSize) % sourceSize,
+          (place(keys[k].Target) - first + targetSize) % targetSize });
+      }
+    }
+    const Points matched = MatchCurves(from, Closed(to), between).topRows(sourceSize);
+    return StartedAt(matched, (sourceSize - start) % sourceSize);
+  };
+  if (keys.size() > 2)
+  {
+    return match(isReversed);
+  }
+  const Points forward = match(false);
+  const Points backward = match(true);
+  const bool isForward = (forward - source).squaredNorm() <= (backward - source).squaredNorm();
+  return isForward != isReversed ? forward : backward;
+}
+
+Points CurveRotations(const Points& source, const Points& moved, bool isClosed)
 {
   const Eigen::Matrix3d best = BestRotation(source, moved);
   Points vectors(source.rows(), 3);
   Eigen::Vector3d guess = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < source.rows(); ++i)
   {
-    const Eigen::Vector3d turned = best * Tangent(source, i);
-    guess = VectorFromRotation(LeastRotation(turned, Tangent(moved, i)) * best, guess);
+    const Eigen::Vector3d turned = best * Tangent(source, i, isClosed);
+    guess = VectorFromRotation(LeastRotation(turned, Tangent(moved, i, isClosed)) * best, guess);
     vectors.row(i) = guess.transpose();
   }
   return vectors;
 }
 
 HandleTargets CurveTargets(const HandleProblem& problem, const std::vector<int>& path,
-  const Points& goals, bool withRotations)
+  const Points& goals, bool withRotations, bool isClosed)
 {
   const auto count = static_cast<Eigen::Index>(path.size());
   Points source(count, 3);
@@ -188,7 +287,8 @@ HandleTargets CurveTargets(const HandleProblem& problem, const std::vector<int>&
   {
     source.row(i) = problem.Rest->row(path[i]);
   }
-  const Points vectors = withRotations ? CurveRotations(source, goals) : Points::Zero(count, 3);
+  const Points vectors =
+    withRotations ? CurveRotations(source, goals, isClosed) : Points::Zero(count, 3);
   HandleTargets targets;
   targets.Motions.resize(1);
   targets.Vertices = path;

@@ -28,6 +28,19 @@ EdgeMask MarkEdges(const TriangleMesh& mesh, const Points& points, const Cuts& c
   }
   return mask;
 }
+
+[[noreturn]] void RefuseChain(std::size_t count, const IdSample& branches, bool isClosed)
+{
+  const std::string where =
+    branches.IsEmpty() ? "" : ": it branches at " + branches.Describe("point", "points");
+  throw Error(ErrorCode::BadInput,
+    "The " + std::to_string(count) + " selected points are not one " +
+      (isClosed ? "ring" : "line") + " of edges" + where +
+      (isClosed ? ". Select the points of one ring, turn ClosedCurve off, or set Source to the "
+                  "shortest path between three points of it or more in their order."
+                : ". Select the points of one line, or set Source to the shortest path between "
+                  "points of it in their order."));
+}
 }
 
 EdgeMask FeatureEdges(const TriangleMesh& mesh, const Points& points, double angle)
@@ -97,26 +110,31 @@ int NearestOnEdges(
 }
 
 std::vector<int> PathThrough(const TriangleMesh& mesh, const Points& points,
-  const std::vector<int>& picks, const EdgeMask& allowed)
+  const std::vector<int>& picks, const EdgeMask& allowed, bool isClosed)
 {
   const auto place = [&](int v)
   { return allowed.empty() ? v : NearestOnEdges(mesh, points, v, allowed); };
   std::vector<int> path;
-  for (std::size_t i = 0; i + 1 < picks.size(); ++i)
+  for (std::size_t i = 0; i + (isClosed ? 0 : 1) < picks.size(); ++i)
   {
+    const int next = picks[(i + 1) % picks.size()];
     const int from = place(picks[i]);
-    const int to = place(picks[i + 1]);
+    const int to = place(next);
     const std::vector<int> part =
       from < 0 || to < 0 ? std::vector<int>() : ShortestEdgePath(mesh, points, from, to, allowed);
     if (part.size() < 2)
     {
       throw Error(ErrorCode::BadInput,
         "There is no path along the edges of Source from point " + std::to_string(picks[i]) +
-          " to point " + std::to_string(picks[i + 1]) +
+          " to point " + std::to_string(next) +
           ": choose two points of one such line, another FeatureAngle or ViewDirection, or set "
           "Source to the shortest path.");
     }
     path.insert(path.end(), part.begin() + (path.empty() ? 0 : 1), part.end());
+  }
+  if (isClosed)
+  {
+    path.pop_back(); // the first again
   }
   std::vector<int> sorted = path;
   std::sort(sorted.begin(), sorted.end());
@@ -125,12 +143,52 @@ std::vector<int> PathThrough(const TriangleMesh& mesh, const Points& points,
   {
     throw Error(ErrorCode::BadInput,
       "The source curve passes point " + std::to_string(*twice) +
-        " twice: choose PointIds in the order of a curve that does not cross itself.");
+        (isClosed ? " twice: choose PointIds in the order of a curve that does not cross itself, "
+                    "three or more around it."
+                  : " twice: choose PointIds in the order of a curve that does not cross itself."));
   }
   return path;
 }
 
-std::vector<int> ChainVertices(const TriangleMesh& mesh, std::vector<int> vertices)
+std::vector<int> RingThrough(
+  const TriangleMesh& mesh, const Points& points, int pick, const EdgeMask& allowed)
+{
+  const int start = NearestOnEdges(mesh, points, pick, allowed);
+  std::vector<int> ring;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int d = start < 0 ? 0 : mesh.RingBegin(start); start >= 0 && d < mesh.RingEnd(start); ++d)
+  {
+    if (!allowed[d])
+    {
+      continue;
+    }
+    // The way back without the edge.
+    EdgeMask others = allowed;
+    others[d] = others[mesh.Twin(d)] = 0;
+    const std::vector<int> back = ShortestEdgePath(mesh, points, mesh.Neighbor(d), start, others);
+    double length = (points.row(mesh.Neighbor(d)) - points.row(start)).norm();
+    for (std::size_t i = 0; i + 1 < back.size(); ++i)
+    {
+      length += (points.row(back[i + 1]) - points.row(back[i])).norm();
+    }
+    if (!back.empty() && length < shortest)
+    {
+      shortest = length;
+      ring.assign(1, start);
+      ring.insert(ring.end(), back.begin(), back.end() - 1);
+    }
+  }
+  if (ring.empty())
+  {
+    throw Error(ErrorCode::BadInput,
+      "No ring of the edges of Source passes near point " + std::to_string(pick) +
+        ": choose another point, FeatureAngle or ViewDirection, or three PointIds or more around "
+        "the ring.");
+  }
+  return ring;
+}
+
+std::vector<int> ChainVertices(const TriangleMesh& mesh, std::vector<int> vertices, bool isClosed)
 {
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -148,14 +206,20 @@ std::vector<int> ChainVertices(const TriangleMesh& mesh, std::vector<int> vertic
   };
   IdSample branches;
   int first = -1;
+  bool hasEnds = false;
   for (const int v : vertices)
   {
     const std::size_t count = neighbors(v).size();
+    hasEnds = hasEnds || count < 2;
     if (count > 2)
     {
       branches.Add(v);
     }
     first = first < 0 && count == 1 ? v : first;
+  }
+  if (isClosed)
+  {
+    first = hasEnds || vertices.empty() ? -1 : vertices.front();
   }
   std::vector<int> chain;
   int before = -1;
@@ -168,15 +232,11 @@ std::vector<int> ChainVertices(const TriangleMesh& mesh, std::vector<int> vertic
       next = w != before ? w : next;
     }
     before = v;
-    v = next;
+    v = isClosed && next == first ? -1 : next;
   }
   if (chain.size() < 2 || chain.size() < vertices.size())
   {
-    throw Error(ErrorCode::BadInput,
-      "The " + std::to_string(vertices.size()) + " selected points are not one line of edges" +
-        (branches.IsEmpty() ? "" : ": it branches at " + branches.Describe("point", "points")) +
-        ". Select the points of one line, or set Source to the shortest path between points of "
-        "it in their order.");
+    RefuseChain(vertices.size(), branches, isClosed);
   }
   return chain;
 }

@@ -29,13 +29,21 @@ int NearestOnEdges(
   const TriangleMesh& mesh, const Points& points, int vertex, const EdgeMask& allowed);
 
 /// The path from each of `picks` (two or more) to the next, along allowed edges; picks
-/// beside these stand for the nearest vertex on them. Throws Error(BadInput) where there is
-/// no path, or it passes a vertex twice.
+/// beside these stand for the nearest vertex on them. With `isClosed` it goes on from the last
+/// to the first, which is not repeated. Throws Error(BadInput) where there is no path, or it
+/// passes a vertex twice.
 std::vector<int> PathThrough(const TriangleMesh& mesh, const Points& points,
-  const std::vector<int>& picks, const EdgeMask& allowed = {});
+  const std::vector<int>& picks, const EdgeMask& allowed = {}, bool isClosed = false);
+
+/// The shortest ring of allowed edges through the vertex on them that is nearest to `pick`, from
+/// there on; the outline of a part, or its border. Throws Error(BadInput) where there is none.
+std::vector<int> RingThrough(
+  const TriangleMesh& mesh, const Points& points, int pick, const EdgeMask& allowed);
 
 /// Puts vertices that form one line of edges in the order of that line, from the end of
-/// the smaller id on. Throws Error(BadInput) where they do not: fewer than two, several
-/// lines, branches, or a ring.
-std::vector<int> ChainVertices(const TriangleMesh& mesh, std::vector<int> vertices);
+/// the smaller id on; with `isClosed` those of a ring, from the smallest id on. Throws
+/// Error(BadInput) where they do not: fewer than two, several lines, branches, or a ring
+/// instead of a line.
+std::vector<int> ChainVertices(
+  const TriangleMesh& mesh, std::vector<int> vertices, bool isClosed = false);
 }
