@@ -85,7 +85,7 @@ def open_scan(mesh):
 
 def snapshot(name):
     """Saves what is on the screen as a picture in the test's output."""
-    frame = cartan_testing.output_path("Screen/Xvfb_screen0")
+    frame = os.environ["CARTAN_SCREEN"]
     # The X window dump of Xvfb -fbdir: a header of big-endian numbers, a color map, rows of
     # blue, green, red and a byte without use.
     with open(frame, "rb") as file:
