@@ -94,24 +94,6 @@ void CheckEdges(const SurfacePiece& piece, const std::vector<char>& isOwned, Dis
   }
 }
 
-/// The sum over all ranks.
-IdSample GatherSample(const Ranks& group, std::vector<std::int64_t> ids)
-{
-  std::sort(ids.begin(), ids.end());
-  Eigen::VectorXd count(1);
-  count[0] = static_cast<double>(ids.size());
-  group.Sum(count);
-  ids.resize(std::min(ids.size(), IdSample::Kept));
-  std::vector<std::int64_t> all = group.Gather(ids);
-  std::sort(all.begin(), all.end());
-  IdSample sample;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count[0]); ++i)
-  {
-    sample.Add(i < all.size() ? all[i] : 0);
-  }
-  return sample;
-}
-
 /// The same message on all ranks.
 void RequireNoDefects(const Ranks& group, const OwnDefects& defects)
 {
@@ -121,10 +103,10 @@ void RequireNoDefects(const Ranks& group, const OwnDefects& defects)
     return;
   }
   MeshReport report;
-  report.NonManifoldEdges = GatherSample(group, defects.NonManifoldEdges);
-  report.InconsistentEdges = GatherSample(group, defects.InconsistentEdges);
-  report.NonManifoldVertices = GatherSample(group, defects.NonManifoldVertices);
-  report.NonFinite = GatherSample(group, defects.NonFinite);
+  report.NonManifoldEdges = group.Sample(defects.NonManifoldEdges);
+  report.InconsistentEdges = group.Sample(defects.InconsistentEdges);
+  report.NonManifoldVertices = group.Sample(defects.NonManifoldVertices);
+  report.NonFinite = group.Sample(defects.NonFinite);
   group.Together(
     [&report]
     {

@@ -173,6 +173,23 @@ std::vector<std::int64_t> Ranks::Gather(const std::vector<std::int64_t>& values)
   return all;
 }
 
+IdSample Ranks::Sample(std::vector<std::int64_t> ids) const
+{
+  std::sort(ids.begin(), ids.end());
+  Eigen::VectorXd count(1);
+  count[0] = static_cast<double>(ids.size());
+  this->Sum(count);
+  ids.resize(std::min(ids.size(), IdSample::Kept));
+  std::vector<std::int64_t> all = this->Gather(ids);
+  std::sort(all.begin(), all.end());
+  IdSample sample;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count[0]); ++i)
+  {
+    sample.Add(i < all.size() ? all[i] : 0);
+  }
+  return sample;
+}
+
 std::int64_t Ranks::SumBefore(std::int64_t value) const
 {
   this->Agree();

@@ -49,6 +49,9 @@ public:
   /// The lists of all ranks, one after the other.
   std::vector<std::int64_t> Gather(const std::vector<std::int64_t>& values) const;
 
+  /// How many ids all ranks have, and the smallest of them.
+  IdSample Sample(std::vector<std::int64_t> ids) const;
+
   /// The sum over the ranks before this one.
   std::int64_t SumBefore(std::int64_t value) const;
 
