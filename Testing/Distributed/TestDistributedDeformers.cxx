@@ -336,7 +336,7 @@ TEST(DistributedDeformers, WhatPiecesAreNotServedIsRefused)
   EXPECT_EQ(textOf(deformer, targets), "");
   deformer.SetVolumeModel(std::make_shared<const cartan::VolumeModel>());
   EXPECT_EQ(textOf(deformer, targets), "");
-  deformer.SetVolumeCorrection(cartan::VolumeCorrection::NeutralOffset);
+  deformer.SetVolumeCorrection(cartan::VolumeCorrection::FrameScaling);
   EXPECT_NE(textOf(deformer, targets).find(gather), std::string::npos);
   deformer.SetVolumeCorrection(cartan::VolumeCorrection::None);
   HandleTargets arrays = targets;

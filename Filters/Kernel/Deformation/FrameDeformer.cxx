@@ -47,6 +47,7 @@ FrameDeformer::FrameDeformer(
     : std::make_shared<HandleLaplacian>(this->Problem, this->EdgeWeights,
         this->Problem.ConstrainPositions ? Hold::AllHandles : Hold::PinnedOnly, backend,
         context.Part(0.5, 1.0));
+  this->CountFreeVertices();
   const std::vector<int> moving = MovingHandleOfVertices(this->Problem);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
@@ -54,6 +55,23 @@ FrameDeformer::FrameDeformer(
     {
       this->HandleVertices.push_back({ v, moving[v] });
     }
+  }
+}
+
+/// Of pieces, those of all.
+void FrameDeformer::CountFreeVertices()
+{
+  const HandleLaplacian& system = *this->FrameSystem;
+  this->FreeVertices = system.NumberOfUnknowns();
+  if (this->Problem.Pieces)
+  {
+    Eigen::VectorXd count = Eigen::VectorXd::Zero(1);
+    for (int i = 0; i < system.NumberOfUnknowns(); ++i)
+    {
+      count[0] += this->Problem.Pieces->IsOwned(system.Vertex(i)) ? 1.0 : 0.0;
+    }
+    this->Problem.Pieces->Sum(count);
+    this->FreeVertices = static_cast<int>(count[0]);
   }
 }
 
@@ -186,97 +204,6 @@ void FrameDeformer::DeformRelative(const HandleTargets& targets, bool wantTransf
     result.Transforms = this->Transforms;
   }
   context.Report(1.0);
-}
-
-PositionRows FrameDeformer::TableSums(const HandleTargets& targets, const ExecutionContext& context)
-{
-  // Frame scaling and the closing of volumes are not linear in the frames.
-  const bool isLinear = !this->PreservesVolume() ||
-    (this->Correction == VolumeCorrection::NeutralOffset && !this->Close);
-  Eigen::Vector3d axis;
-  Eigen::VectorXd angles;
-  if (!(this->TableOptions.Range > 0.0) || !isLinear || targets.Motions.empty() ||
-    !this->FindTurns(targets, axis, angles))
-  {
-    return {};
-  }
-  Eigen::Index most = 0;
-  const double largest = angles.cwiseAbs().maxCoeff(&most);
-  if (largest > this->TableOptions.Range || (largest == 0.0 && angles.size() > 1))
-  {
-    return {};
-  }
-  const double angle = angles[most];
-  const Eigen::VectorXd ratios =
-    largest > 0.0 ? Eigen::VectorXd(angles / angle) : Eigen::VectorXd::Ones(1);
-  // A table that could not be made has the range 0.
-  const double range = this->HasTable(ratios, context) ? this->Table->GetRange() : 0.0;
-  if (range == 0.0 || std::abs(angle) > range)
-  {
-    return {};
-  }
-  std::vector<Eigen::Vector3d> translations;
-  for (const HandleMotion& motion : targets.Motions)
-  {
-    translations.push_back(motion.Translation);
-  }
-  return this->Table->Evaluate(angle, axis, translations);
-}
-
-/// Whether there is a table for these ratios, which may be made here.
-bool FrameDeformer::HasTable(const Eigen::VectorXd& ratios, const ExecutionContext& context)
-{
-  const auto areEqual = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b)
-  { return a.size() == b.size() && (a - b).cwiseAbs().maxCoeff() <= 1e-9; };
-  const Points* offsets = this->NeutralOffsets();
-  const bool isRepeated = areEqual(ratios, this->LastRatios);
-  this->LastRatios = ratios;
-  const bool isCurrent = this->Table && this->MadeWith.Range == this->TableOptions.Range &&
-    this->MadeWith.Tolerance == this->TableOptions.Tolerance && this->MadeWithOffsets == offsets;
-  if (isCurrent && areEqual(ratios, this->MadeForRatios))
-  {
-    return true;
-  }
-  // Handles that are dragged one after the other have another ratio at each motion.
-  if (isCurrent && !isRepeated)
-  {
-    return false;
-  }
-  this->Table.reset();
-  this->Table = std::make_unique<TurnTable>(this->PositionSystem, this->Problem.Rest, offsets,
-    this->TurnsWith(ratios), this->TableOptions, context);
-  this->MadeWith = this->TableOptions;
-  this->MadeWithOffsets = offsets;
-  this->MadeForRatios = ratios;
-  return true;
-}
-
-TurnsOfAngle FrameDeformer::TurnsWith(const Eigen::VectorXd& ratios) const
-{
-  const auto ofHandle = [ratios](int handle, double angle)
-  {
-    const double turn = ratios[handle] * angle;
-    return TurnParts{ std::sin(turn), 1.0 - std::cos(turn) };
-  };
-  if (this->PositionSystem == this->FrameSystem)
-  {
-    return { [this, ratios](int local, double angle) { return this->TurnOf(local, ratios, angle); },
-      ofHandle };
-  }
-  std::vector<int> frameLocal(this->Problem.Handle.size(), -1);
-  for (int i = 0; i < this->FrameSystem->NumberOfLocals(); ++i)
-  {
-    frameLocal[this->FrameSystem->Vertex(i)] = i;
-  }
-  return { [this, ratios, ofHandle, frameLocal = std::move(frameLocal)](int local, double angle)
-    {
-      const int frame = frameLocal[this->PositionSystem->Vertex(local)];
-      const int handle = this->PositionSystem->MovingHandle(local);
-      return frame >= 0 ? this->TurnOf(frame, ratios, angle)
-        : handle >= 0   ? ofHandle(handle, angle)
-                        : TurnParts{};
-    },
-    ofHandle };
 }
 
 /// Nothing unless they are asked for.

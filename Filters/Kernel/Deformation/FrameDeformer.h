@@ -6,6 +6,8 @@
 #include "Deformation/TurnTable.h"
 #include "Measure/VolumeModel.h"
 
+#include <optional>
+
 namespace cartan
 {
 enum class VolumeCorrection
@@ -41,7 +43,8 @@ public:
 
   /// Of HandleProblem::GetParted(), without slivers. Needed for any volume correction and
   /// for closing; empty where there is none. Has no effect on components that enclose
-  /// no volume.
+  /// no volume. On one of several pieces the rows of the whole's model that are here, at least
+  /// one of them; nothing but the neutral offset serves there.
   void SetVolumeModel(std::shared_ptr<const VolumeModel> model);
   const std::shared_ptr<const VolumeModel>& GetVolumeModel() const { return this->Model; }
 
@@ -55,7 +58,7 @@ public:
   const TurnTable* GetUsedTable() const { return this->UsesTable ? this->Table.get() : nullptr; }
 
   int GetNumberOfFactorizations() const override;
-  int GetNumberOfFreeVertices() const override { return this->FrameSystem->NumberOfUnknowns(); }
+  int GetNumberOfFreeVertices() const override { return this->FreeVertices; }
   std::string GetWarning() const override { return this->Warning; }
 
   std::size_t GetBytes() const override;
@@ -69,6 +72,9 @@ protected:
   PositionRows RowsRelative(const HandleTargets& targets, const ExecutionContext& context) override;
   void DeformRelative(const HandleTargets& targets, bool wantTransforms, DeformedSurface& result,
     const ExecutionContext& context) override;
+
+  /// Where it is a sum over fields or tables that are there.
+  bool IsLocalRelative(const HandleTargets& targets) override;
 
   /// Volume is preserved by moving regions that no handle deforms, too.
   bool FollowsRigidHandles() const override { return !this->PreservesVolume(); }
@@ -88,6 +94,9 @@ protected:
   /// unknowns; nothing where it does not serve.
   virtual PositionRows DirectSums(const HandleTargets&, const ExecutionContext&) { return {}; }
 
+  /// Whether DirectSums() serves, and without computing anything first.
+  virtual bool HasDirectSums(const HandleTargets&) const { return false; }
+
   /// For methods that a TurnTable serves: whether all handles turn rigidly about one axis, that
   /// axis, and the angle of each moving handle. Then results about the rotations are set, too.
   virtual bool FindTurns(const HandleTargets&, Eigen::Vector3d&, Eigen::VectorXd&) { return false; }
@@ -103,6 +112,13 @@ protected:
   bool KeepsNoVolume() const
   {
     return !this->Model || (this->Correction == VolumeCorrection::None && !this->Close);
+  }
+
+  /// Without, or with what each vertex needs to know of them for itself.
+  bool VolumeServesPieces() const
+  {
+    return this->KeepsNoVolume() ||
+      (this->Correction == VolumeCorrection::NeutralOffset && !this->Close);
   }
 
   bool PreservesVolume() const { return !this->KeepsNoVolume() && !this->Model->IsEmpty(); }
@@ -125,6 +141,17 @@ protected:
   std::string Warning;
 
 private:
+  /// A motion that a table may serve.
+  struct Turn
+  {
+    Eigen::Vector3d Axis;
+    double Angle;           ///< of the handle that turns most
+    Eigen::VectorXd Ratios; ///< of the angles of all handles to that one
+  };
+
+  void CountFreeVertices();
+  std::optional<Turn> FindTurn(const HandleTargets& targets);
+  bool IsTableCurrent() const;
   PositionRows TableSums(const HandleTargets& targets, const ExecutionContext& context);
   void WriteRows(
     const HandleTargets& targets, const PositionRows& sums, int begin, int end, double* rows) const;
@@ -142,6 +169,7 @@ private:
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
   void CloseVolumes(Points& positions);
 
+  int FreeVertices = 0;
   VolumeCorrection Correction = VolumeCorrection::None;
   bool Close = false;
   std::shared_ptr<const VolumeModel> Model;

@@ -40,7 +40,10 @@ public:
   static void RequireMotions(const HandleTargets& targets);
 
 protected:
-  bool ServesPieces() const override { return this->KeepsNoVolume() && this->Harmonic.has_value(); }
+  bool ServesPieces() const override
+  {
+    return this->VolumeServesPieces() && this->Harmonic.has_value();
+  }
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
 
 private:

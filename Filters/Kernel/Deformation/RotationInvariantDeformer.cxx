@@ -256,15 +256,21 @@ void RotationInvariantDeformer::ComputeDragFields(const ExecutionContext& contex
   }
 }
 
+bool RotationInvariantDeformer::ServesDirectSums(const HandleTargets& targets) const
+{
+  return this->PositionSystem == this->FrameSystem && this->Harmonic.IsStored() &&
+    !targets.IsPerVertex() && !this->UsesRotations(targets);
+}
+
 PositionRows RotationInvariantDeformer::DirectSums(
   const HandleTargets& targets, const ExecutionContext& context)
 {
-  if (this->PositionSystem != this->FrameSystem || !this->Harmonic.IsStored() ||
-    targets.IsPerVertex() || this->UsesRotations(targets))
+  if (!this->ServesDirectSums(targets))
   {
     return {};
   }
-  if (this->DragFields.rows() == 0)
+  // A piece may have no rows.
+  if (this->DragFields.cols() == 0)
   {
     this->ComputeDragFields(context);
   }

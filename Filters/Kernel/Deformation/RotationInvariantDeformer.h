@@ -52,15 +52,20 @@ public:
   void SetFrameProjection(FrameProjection projection) { this->Projection = projection; }
 
 protected:
-  bool ServesPieces() const override { return this->KeepsNoVolume(); }
+  bool ServesPieces() const override { return this->VolumeServesPieces(); }
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
   PositionRows DirectSums(const HandleTargets& targets, const ExecutionContext& context) override;
+  bool HasDirectSums(const HandleTargets& targets) const override
+  {
+    return this->DragFields.cols() > 0 && this->ServesDirectSums(targets);
+  }
   bool FindTurns(
     const HandleTargets& targets, Eigen::Vector3d& axis, Eigen::VectorXd& angles) override;
   TurnParts TurnOf(int local, const Eigen::VectorXd& ratios, double angle) const override;
 
 private:
   bool UsesRotations(const HandleTargets& targets) const;
+  bool ServesDirectSums(const HandleTargets& targets) const;
   void BlendMotions(const HandleTargets& targets, bool project, const ExecutionContext& context);
   void AddIdentity(const Field& differences, bool project, const ExecutionContext& context);
   void ComputeDragFields(const ExecutionContext& context);

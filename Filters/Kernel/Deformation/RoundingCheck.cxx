@@ -40,8 +40,9 @@ double ShortMotion(const HandleProblem& problem)
 
 std::string DescribeLostDigits(const HandleProblem& problem, const DeformedSurface& result)
 {
-  // At each motion, in a single pass.
-  if ((result.Positions - *problem.Rest).cwiseAbs().maxCoeff() <= ShortMotion(problem))
+  // At each motion, in a single pass. A piece may be empty.
+  if (result.Positions.rows() == 0 ||
+    (result.Positions - *problem.Rest).cwiseAbs().maxCoeff() <= ShortMotion(problem))
   {
     return {};
   }

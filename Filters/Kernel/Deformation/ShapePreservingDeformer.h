@@ -63,7 +63,7 @@ public:
   }
 
 protected:
-  bool ServesPieces() const override { return this->KeepsNoVolume(); }
+  bool ServesPieces() const override { return this->VolumeServesPieces(); }
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context) override;
   bool FindTurns(
     const HandleTargets& targets, Eigen::Vector3d& axis, Eigen::VectorXd& angles) override;

@@ -52,6 +52,11 @@ HandleTargets SurfaceDeformer::Relative(const HandleTargets& targets)
   return this->Common->Remove(targets);
 }
 
+bool SurfaceDeformer::IsLocal(const HandleTargets& targets)
+{
+  return !this->Problem.Pieces || (this->Common && this->IsLocalRelative(this->Relative(targets)));
+}
+
 void SurfaceDeformer::Deform(const HandleTargets& targets, bool wantTransforms,
   DeformedSurface& result, const ExecutionContext& context)
 {

@@ -20,7 +20,7 @@ namespace cartan
 /// fields send no message: with rotation-invariant editing those without projection after
 /// the first, and what is read from a table. RotationInvariantDeformer, PoissonDeformer with
 /// harmonic propagation and ShapePreservingDeformer serve pieces, without volume corrections
-/// and with motions of handles rather than targets of points.
+/// other than the neutral offset, and with motions of handles rather than targets of points.
 class SurfaceDeformer
 {
 public:
@@ -39,6 +39,10 @@ public:
   /// written.
   PositionRows DeformInRows(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
+
+  /// Whether the next motion by these targets sends no message to other ranks, where there are
+  /// Pieces: the same on all of them.
+  bool IsLocal(const HandleTargets& targets);
 
   /// What the deformer was made for. HandleTargets::Motions has one per Moving
   /// handle of this one.
@@ -77,6 +81,9 @@ protected:
 
   /// Whether the method works on a piece; else Deform() throws Error(BadInput) there.
   virtual bool ServesPieces() const { return false; }
+
+  /// IsLocal() for the targets of DeformRelative().
+  virtual bool IsLocalRelative(const HandleTargets&) { return false; }
 
   /// What the targets of DeformRelative are relative to: for results beside the surface.
   const RigidMotion& GetCommonMotion() const { return this->Common->GetMotion(); }
