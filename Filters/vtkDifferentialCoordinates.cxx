@@ -29,8 +29,8 @@ void vtkDifferentialCoordinates::Execute(cartan::FilterRun& run)
     run.Output(), name, row.Apply(mesh, *surface->Positions, context.Part(0.7, 1.0)));
   vtkNew<vtkUnsignedCharArray> areDefined;
   areDefined->SetName((name + "AreDefined").c_str());
-  areDefined->SetNumberOfValues(mesh.NumberOfVertices());
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  areDefined->SetNumberOfValues(run.Input()->GetNumberOfPoints());
+  for (int v = 0; v < static_cast<int>(areDefined->GetNumberOfValues()); ++v)
   {
     areDefined->SetValue(v, mesh.IsUsed(v) && !mesh.IsBoundary(v) ? 1 : 0);
   }

@@ -47,6 +47,7 @@ protected:
   ~vtkDifferentialCoordinates() override = default;
 
   void Execute(cartan::FilterRun& run) override;
+  bool SupportsPieces() const override { return true; }
 };
 
 #endif

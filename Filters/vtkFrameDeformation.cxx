@@ -3,6 +3,7 @@
 
 #include "Bridge/DeformationMethod.h"
 
+#include "Bridge/PieceVolume.h"
 #include "Bridge/PointArrays.h"
 #include "Kernel/Base/Constants.h"
 #include "Kernel/Deformation/FrameDeformer.h"
@@ -42,9 +43,17 @@ cartan::ContentKey KeyOfModel(const cartan::HandleProblem& problem, cartan::Cont
     : surface;
 }
 
-double DiagonalOf(const cartan::HandleProblem& problem)
+std::shared_ptr<const cartan::VolumeModel> KeepModel(const cartan::HandleProblem& problem,
+  cartan::FilterRun& run, const cartan::ExecutionContext& context)
 {
-  return cartan::BoundingDiagonal(*problem.Rest, problem.Mesh->GetTriangles());
+  return run.Keep<cartan::VolumeModel>(
+    KeyOfModel(problem, run.SurfaceKey()), [&] { return NewModel(problem, context); });
+}
+
+double DiagonalOf(const cartan::HandleProblem& problem, cartan::FilterRun& run)
+{
+  return run.Pieces() ? run.GetDiagonal()
+                      : cartan::BoundingDiagonal(*problem.Rest, problem.Mesh->GetTriangles());
 }
 
 /// The part of the volume under each vertex; NaN where none is enclosed.
@@ -121,14 +130,14 @@ cartan::DeformationMethod vtkFrameDeformation::FrameMethod(
   method.Configure = [this, frames](cartan::FilterRun& run, const cartan::ExecutionContext& context)
   {
     this->CorrectVolume(*frames, run, context);
-    this->ConfigureTable(*frames);
+    this->ConfigureTable(*frames, DiagonalOf(frames->GetProblem(), run));
   };
   method.Decorate = [this, frames](const cartan::DeformedSurface& result, cartan::FilterRun& run)
   {
     if (const cartan::TurnTable* table = frames->GetUsedTable())
     {
       this->TabulatedRange = table->GetRange() / cartan::Pi * 180.0;
-      this->TabulationError = table->GetError() / DiagonalOf(frames->GetProblem());
+      this->TabulationError = table->GetError() / DiagonalOf(frames->GetProblem(), run);
     }
     this->AddVolumeArrays(*frames, result, run);
   };
@@ -146,14 +155,32 @@ void vtkFrameDeformation::CorrectVolume(
   deformer.SetCloseVolume(this->CloseVolume);
   if (this->UsesVolumeModel())
   {
-    const cartan::HandleProblem& problem = deformer.GetProblem();
-    const auto model = run.Keep<cartan::VolumeModel>(
-      KeyOfModel(problem, run.SurfaceKey()), [&] { return NewModel(problem, context); });
-    deformer.SetVolumeModel(model);
+    deformer.SetVolumeModel(run.Pieces() ? this->KeepPieceModel(run, context)
+                                         : KeepModel(deformer.GetProblem(), run, context));
   }
 }
 
-void vtkFrameDeformation::ConfigureTable(cartan::FrameDeformer& deformer) const
+std::shared_ptr<const cartan::VolumeModel> vtkFrameDeformation::KeepPieceModel(
+  cartan::FilterRun& run, const cartan::ExecutionContext& context)
+{
+  vtkPolyData* input = run.Input();
+  return run.Keep<cartan::VolumeModel>(cartan::KeyOfPiece(input),
+    [&]
+    {
+      const auto piece = run.ReadPiece();
+      if (piece->TotalNumberOfPoints > this->GetGatherLimit())
+      {
+        throw cartan::Error(cartan::ErrorCode::BadInput,
+          "The surface has " + std::to_string(piece->TotalNumberOfPoints) +
+            " points in pieces, more than GatherLimit (" + std::to_string(this->GetGatherLimit()) +
+            ") lets each rank gather for VolumeCorrection, whose rays go through the whole: set "
+            "VolumeCorrection to None, or raise the limit if all ranks have the memory.");
+      }
+      return cartan::MeasurePieceVolume(*piece, context);
+    });
+}
+
+void vtkFrameDeformation::ConfigureTable(cartan::FrameDeformer& deformer, double diagonal) const
 {
   if (!(std::isfinite(this->TurnRange) && std::isfinite(this->TurnTolerance)))
   {
@@ -162,7 +189,7 @@ void vtkFrameDeformation::ConfigureTable(cartan::FrameDeformer& deformer) const
   }
   deformer.SetTurnTable(this->TabulateTurns
       ? cartan::TurnTable::Options{ this->TurnRange / 180.0 * cartan::Pi,
-          this->TurnTolerance * DiagonalOf(deformer.GetProblem()) }
+          this->TurnTolerance * diagonal }
       : cartan::TurnTable::Options{});
 }
 

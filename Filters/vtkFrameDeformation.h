@@ -40,6 +40,7 @@ namespace cartan
 {
 class FrameDeformer;
 struct DeformedSurface;
+struct VolumeModel;
 }
 
 class VTKCARTAN_EXPORT vtkFrameDeformation : public vtkSurfaceDeformation
@@ -191,6 +192,16 @@ protected:
    */
   cartan::DeformationMethod FrameMethod(std::unique_ptr<cartan::FrameDeformer> deformer);
 
+  /**
+   * SettingsServePieces(), and no volumes or shape distances, which are those of the whole. Of
+   * volume corrections NEUTRAL_OFFSET serves.
+   */
+  bool FrameSettingsServePieces() const
+  {
+    return this->SettingsServePieces() && this->VolumeCorrection != FRAME_SCALING &&
+      !this->CloseVolume && !this->GenerateVolumeArrays && !this->GenerateShapeDistance;
+  }
+
   void AddSettings(cartan::ContentKey& settings) const override;
   bool NeedsTransforms() const override { return this->GenerateShapeDistance; }
   bool NeedsPositions() const override { return this->GenerateVolumeArrays; }
@@ -199,8 +210,10 @@ protected:
 private:
   void CorrectVolume(cartan::FrameDeformer& deformer, cartan::FilterRun& run,
     const cartan::ExecutionContext& context);
-  void ConfigureTable(cartan::FrameDeformer& deformer) const;
+  void ConfigureTable(cartan::FrameDeformer& deformer, double diagonal) const;
   bool UsesVolumeModel() const;
+  std::shared_ptr<const cartan::VolumeModel> KeepPieceModel(
+    cartan::FilterRun& run, const cartan::ExecutionContext& context);
   void AddVolumeArrays(const cartan::FrameDeformer& deformer, const cartan::DeformedSurface& result,
     cartan::FilterRun& run);
 

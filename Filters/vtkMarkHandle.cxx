@@ -6,6 +6,7 @@
 #include "Bridge/InputPreparation.h"
 #include "Bridge/JoinedCopies.h"
 #include "Bridge/MarkedPoints.h"
+#include "Bridge/PieceRegions.h"
 #include "Bridge/SelectionReader.h"
 
 #include "vtkCompositeDataIterator.h"
@@ -22,7 +23,6 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -44,21 +44,6 @@ void AddInside(
     const double value = values->GetValue(i);
     mask[i] |= insideOut ? value > 0.0 : value <= 0.0;
   }
-}
-
-// Whether ids are those of one rank, as where points are picked in a view.
-bool IsOfRanks(vtkSelection* selection)
-{
-  for (unsigned int n = 0; n < selection->GetNumberOfNodes(); ++n)
-  {
-    vtkInformation* properties = selection->GetNode(n)->GetProperties();
-    if (properties->Has(vtkSelectionNode::PROCESS_ID()) &&
-      properties->Get(vtkSelectionNode::PROCESS_ID()) >= 0)
-    {
-      return true;
-    }
-  }
-  return false;
 }
 
 // Returns what is odd about the surface that the region grows over, and the
@@ -328,6 +313,12 @@ void vtkMarkHandle::MarkBlock(
     cartan::AddPointIds(this->PointIds, block.FirstPoint, mask);
   }
   context.Report(0.2);
+  if (run.Pieces())
+  {
+    cartan::GrowOverPieces(run, this->GrowRings, mask);
+    this->WriteMarks(block, mask);
+    return;
+  }
   const auto grow = [&](vtkPolyData* input, cartan::PointMask& grown)
   { return Grow(input, this->GrowRings, this->GrowDistance, grown, context.Part(0.2, 0.9)); };
   if (const auto surface =
@@ -336,7 +327,12 @@ void vtkMarkHandle::MarkBlock(
     run.Warn(surface->Describe("input", block.Input));
     run.KeepSurface(surface);
   }
+  this->WriteMarks(block, mask);
+  context.Report(1.0);
+}
 
+void vtkMarkHandle::WriteMarks(const Block& block, const std::vector<unsigned char>& mask)
+{
   auto handles = cartan::CopyHandles(block.Input, this->HandleArrayName);
   this->NumberOfMarkedPoints += cartan::Mark(handles, mask, this->HandleId, this->Overwrite);
   block.Output->ShallowCopy(block.Input);
@@ -346,7 +342,15 @@ void vtkMarkHandle::MarkBlock(
     block.Output->GetPointData()->SetActiveScalars(this->HandleArrayName.c_str());
   }
   cartan::ShareKeys(block.Input, block.Output);
-  context.Report(1.0);
+}
+
+// Ids and selections are of the whole, distances go over the whole.
+bool vtkMarkHandle::SupportsPieces() const
+{
+  auto* self = const_cast<vtkMarkHandle*>(this); // what is connected is no state of this class
+  const bool hasSelection = self->GetNumberOfInputConnections(1) > 0 || !this->PointIds.empty();
+  return this->GrowDistance == 0.0 && !(this->UsesSelection() && hasSelection) &&
+    vtkPolyData::SafeDownCast(self->GetInputDataObject(0, 0)) != nullptr;
 }
 
 void vtkMarkHandle::Execute(cartan::FilterRun& run)
@@ -361,7 +365,7 @@ void vtkMarkHandle::Execute(cartan::FilterRun& run)
   vtkSmartPointer<vtkDataObject> evaluated;
   if (selection && selection->GetNumberOfNodes() > 0 && this->UsesSelection())
   {
-    if (input != this->GetInputDataObject(0, 0) && IsOfRanks(selection))
+    if (input != this->GetInputDataObject(0, 0) && cartan::IsOfRanks(selection))
     {
       throw cartan::Error(cartan::ErrorCode::BadInput,
         "The selection names points of the pieces on each rank, and the pieces are gathered: mark "
@@ -380,7 +384,8 @@ void vtkMarkHandle::Execute(cartan::FilterRun& run)
     const double count = static_cast<double>(blocks.size());
     this->MarkBlock(blocks[b], run, run.Context().Part(b / count, (b + 1.0) / count));
   }
-  if (this->NumberOfMarkedPoints == 0)
+  const bool hasMarked = this->NumberOfMarkedPoints > 0;
+  if (!(run.Pieces() ? run.Pieces()->Any(hasMarked) : hasMarked))
   {
     run.Warn(this->DescribeEmptyRegion(selection || !this->PointIds.empty()));
   }

@@ -184,7 +184,8 @@ public:
 
   /**
    * The number of points of the region that have HandleId after the last
-   * execution; with HandleId 0, that are free.
+   * execution; with HandleId 0, that are free. Of a surface that stays in pieces, those of this
+   * rank's piece.
    */
   vtkGetMacro(NumberOfMarkedPoints, vtkIdType);
 
@@ -212,6 +213,7 @@ protected:
   void UsePreparedInput(cartan::FilterRun&) const override {} // only to grow
   void Execute(cartan::FilterRun& run) override;
   void ForgetResults() override { this->NumberOfMarkedPoints = 0; }
+  bool SupportsPieces() const override;
 
 private:
   struct Block;
@@ -225,6 +227,8 @@ private:
   }
   void MarkBlock(
     const Block& block, cartan::FilterRun& run, const cartan::ExecutionContext& context);
+
+  void WriteMarks(const Block& block, const std::vector<unsigned char>& mask);
 
   /// Why no point is marked, in a sentence.
   std::string DescribeEmptyRegion(bool hasSelection);

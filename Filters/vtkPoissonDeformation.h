@@ -61,6 +61,11 @@ protected:
   vtkPoissonDeformation() = default;
   ~vtkPoissonDeformation() override = default;
 
+  bool SupportsPieces() const override
+  {
+    return this->FrameSettingsServePieces() && this->Propagation == HARMONIC;
+  }
+
   cartan::DeformationMethod NewFrameMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
   void RequireTargets(const cartan::HandleTargets& targets) const override;

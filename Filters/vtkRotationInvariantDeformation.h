@@ -67,6 +67,8 @@ protected:
   vtkRotationInvariantDeformation() = default;
   ~vtkRotationInvariantDeformation() override = default;
 
+  bool SupportsPieces() const override { return this->FrameSettingsServePieces(); }
+
   cartan::DeformationMethod NewFrameMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
 

@@ -81,6 +81,11 @@ protected:
   vtkShapePreservingDeformation();
   ~vtkShapePreservingDeformation() override = default;
 
+  bool SupportsPieces() const override
+  {
+    return this->FrameSettingsServePieces() && this->MaximumIterations == 1;
+  }
+
   cartan::DeformationMethod NewFrameMethod(const cartan::HandleProblem& problem,
     cartan::SolverBackend backend, const cartan::ExecutionContext& context) override;
   void ForgetResults() override;

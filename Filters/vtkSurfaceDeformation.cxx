@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDeformation.h"
 
+#include "Bridge/DeformationInput.h"
 #include "Bridge/MotionTable.h"
 #include "Bridge/Preparation.h"
 #include "Bridge/PreparedSurface.h"
@@ -255,25 +256,44 @@ void vtkSurfaceDeformation::AddSettings(cartan::ContentKey& settings) const
   settings.Add(static_cast<std::uint64_t>(this->ScaleConstraintWeights));
 }
 
-cartan::HandleProblem vtkSurfaceDeformation::MakeProblem(vtkPolyData* input,
-  const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
-  std::vector<int> moving) const
+bool vtkSurfaceDeformation::SettingsServePieces() const
+{
+  return (this->Solver == AUTOMATIC_SOLVER || this->Solver == CONJUGATE_GRADIENTS) &&
+    !this->ScaleConstraintWeights && this->TargetPositionArrayName.empty() &&
+    this->RotationVectorArrayName.empty() && this->TransformArrayName.empty();
+}
+
+cartan::HandleProblem vtkSurfaceDeformation::MakeProblem(cartan::FilterRun& run,
+  const cartan::DeformationInput& read, const cartan::Handles& handles, std::vector<int> moving)
 {
   static_assert(static_cast<int>(cartan::LaplacianWeights::Uniform) == UNIFORM &&
       static_cast<int>(cartan::LaplacianWeights::Cotangent) == COTANGENT &&
       static_cast<int>(cartan::LaplacianWeights::MeanValue) == MEAN_VALUE,
     "the enumerations agree");
+  vtkPolyData* input = run.Input();
   cartan::HandleProblem problem;
-  problem.Mesh = surface->Mesh;
-  problem.Rest = surface->Positions;
+  problem.Mesh = read.TheSurface->Mesh;
+  problem.Rest = read.TheSurface->Positions;
   problem.Handle = handles.OfVertex;
   problem.Moving = std::move(moving);
   problem.Weights = static_cast<cartan::LaplacianWeights>(this->LaplacianWeights);
   problem.PositionWeights = problem.Weights;
   problem.ConstrainPositions = this->ConstrainHandlePositions;
-  if (!this->ConstraintWeightArrayName.empty())
+  const std::string& weights = this->ConstraintWeightArrayName;
+  if (read.Piece)
   {
-    problem.SoftWeights = cartan::ReadSoftWeights(input, this->ConstraintWeightArrayName, handles);
+    cartan::RequirePiecesServe(run, *read.Piece, this->GetGatherLimit());
+    problem.Pieces = read.Piece->Rows;
+    if (!weights.empty())
+    {
+      problem.SoftWeights =
+        cartan::ReadPieceWeights(input, *read.Piece, *run.Pieces(), weights, handles);
+    }
+    return problem;
+  }
+  if (!weights.empty())
+  {
+    problem.SoftWeights = cartan::ReadSoftWeights(input, weights, handles);
   }
   cartan::HoldTogether(cartan::ReadJoinedPoints(input), problem);
   if (this->ScaleConstraintWeights)
@@ -284,7 +304,7 @@ cartan::HandleProblem vtkSurfaceDeformation::MakeProblem(vtkPolyData* input,
 }
 
 std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::FilterRun& run,
-  const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
+  const cartan::DeformationInput& read, const cartan::Handles& handles,
   const std::vector<int>& moving, cartan::ContentKey key)
 {
   vtkPolyData* input = run.Input();
@@ -293,7 +313,7 @@ std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::Filt
   key.Add(cartan::KeyOfPointArray(input, this->ConstraintWeightArrayName).GetValue());
   key.Add(cartan::KeyOfPointArray(input, cartan::JoinedPoints).GetValue());
   this->AddSettings(key);
-  const bool isChecked = input->GetNumberOfPoints() <= this->RoundingCheckLimit;
+  const bool isChecked = !read.Piece && input->GetNumberOfPoints() <= this->RoundingCheckLimit;
   key.Add(static_cast<std::uint64_t>(isChecked));
   const auto make = [this](cartan::HandleProblem problem, const cartan::ExecutionContext& context)
   {
@@ -308,9 +328,9 @@ std::shared_ptr<cartan::Preparation> vtkSurfaceDeformation::Prepare(cartan::Filt
     {
       const double end = 0.75 * this->ProgressBeforeMotion();
       const double middle = isChecked ? 0.5 * (0.12 + end) : end;
-      const cartan::HandleProblem problem = this->MakeProblem(input, surface, handles, moving);
-      auto fresh =
-        make(Reduced(problem, run.Context().Part(0.1, 0.12)), run.Context().Part(0.12, middle));
+      const cartan::HandleProblem problem = this->MakeProblem(run, read, handles, moving);
+      auto fresh = make(read.Piece ? problem : Reduced(problem, run.Context().Part(0.1, 0.12)),
+        run.Context().Part(0.12, middle));
       this->State->Factorizations += fresh->Method.Deformer->GetNumberOfFactorizations();
       if (isChecked)
       {
@@ -355,32 +375,20 @@ void vtkSurfaceDeformation::Deform(cartan::FilterRun& run)
     "the enumerations agree");
   const double start = vtkTimerLog::GetUniversalTime();
   vtkPolyData* input = run.Input();
-  const auto surface = run.ReadSurface();
-
-  cartan::ContentKey key = surface->Key;
+  const cartan::DeformationInput read = cartan::ReadDeformationInput(run);
+  const cartan::Surface& surface = *read.TheSurface;
+  cartan::ContentKey key = surface.Key;
   key.Add(this->HandleArrayName);
   key.Add(cartan::KeyOfPointArray(input, this->HandleArrayName).GetValue());
-  const auto handles = run.Keep<cartan::Handles>(key,
-    [&]
-    {
-      return std::make_unique<cartan::Handles>(
-        cartan::ReadHandles(input, *surface->Mesh, this->HandleArrayName));
-    });
+  const auto handles = cartan::KeepHandles(run, read, this->HandleArrayName, key);
   const cartan::MotionsById motions = this->State->Motions.Collect(this->ActiveHandle);
   cartan::RequireMeaningfulMotions(motions, *handles);
-  const auto arrays = this->KeepHandleArrays(run, *surface, *handles, key);
-
-  std::vector<int> moving = arrays->MovingIds;
-  for (const auto& entry : motions)
-  {
-    moving.push_back(entry.first);
-  }
-  std::sort(moving.begin(), moving.end());
-  moving.erase(std::unique(moving.begin(), moving.end()), moving.end());
+  const auto arrays = this->KeepHandleArrays(run, surface, *handles, key);
+  const std::vector<int> moving = cartan::MovingHandles(*arrays, motions);
   const cartan::HandleTargets targets =
-    cartan::MakeTargets(*surface, moving, motions, *handles, *arrays);
+    cartan::MakeTargets(surface, moving, motions, *handles, *arrays);
   this->RequireTargets(targets);
-  const auto prepared = this->Prepare(run, surface, *handles, moving, key);
+  const auto prepared = this->Prepare(run, read, *handles, moving, key);
   cartan::SurfaceDeformer& deformer = *prepared->Method.Deformer;
   const int factorizations = deformer.GetNumberOfFactorizations();
   const double motion = this->ProgressBeforeMotion();
@@ -391,8 +399,19 @@ void vtkSurfaceDeformation::Deform(cartan::FilterRun& run)
     this->GenerateFrameChange || this->GenerateRotationVector || this->NeedsTransforms();
   fields.Rotations = this->GenerateRotationVector;
   fields.Normals = input->GetPointData()->GetNormals() || input->GetCellData()->GetNormals();
-  cartan::DeformAndWrite(*prepared, targets, fields, this->NeedsPositions(), *surface, run,
-    run.Context().Part(motion, 0.95));
+  const auto move = [&]
+  {
+    cartan::DeformAndWrite(*prepared, targets, fields, this->NeedsPositions(), surface, run,
+      run.Context().Part(motion, 0.95));
+  };
+  if (read.Piece && deformer.IsLocal(targets))
+  {
+    run.Alone(move);
+  }
+  else
+  {
+    run.Together(move);
+  }
   this->State->Factorizations += deformer.GetNumberOfFactorizations() - factorizations;
 
   run.Warn(cartan::AddTransformArrays(

@@ -49,6 +49,7 @@ class ContentKey;
 class ExecutionContext;
 enum class ErrorCode;
 enum class SolverBackend;
+struct DeformationInput;
 struct DeformationMethod;
 struct HandleArrays;
 struct HandleProblem;
@@ -262,7 +263,8 @@ public:
    * Surfaces of up to so many points are deformed twice, the second time with all
    * points moved by 1e-12 of the size, and a warning says where that changes the
    * result by more than 1e-5 of the size: rounding decides there. It takes the time
-   * and memory of a deformation. 0: never. Default: 5000.
+   * and memory of a deformation. 0: never; nor are surfaces that stay in pieces on several
+   * ranks. Default: 5000.
    */
   vtkSetClampMacro(RoundingCheckLimit, int, 0, VTK_INT_MAX);
   vtkGetMacro(RoundingCheckLimit, int);
@@ -318,6 +320,13 @@ protected:
 
   void Execute(cartan::FilterRun& run) override;
   void ForgetResults() override;
+  bool MovesAlone() const override { return true; }
+
+  /**
+   * Whether these settings serve surfaces in pieces, for methods whose SupportsPieces()
+   * depends on more than that.
+   */
+  bool SettingsServePieces() const;
 
   /**
    * The method for a problem: what survives from one motion to the next. Throws
@@ -360,11 +369,10 @@ private:
   vtkDataObject* InputIfAny();
   void Deform(cartan::FilterRun& run);
   std::string DescribeRemedy(cartan::ErrorCode code) const;
-  cartan::HandleProblem MakeProblem(vtkPolyData* input,
-    const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
-    std::vector<int> moving) const;
+  cartan::HandleProblem MakeProblem(cartan::FilterRun& run, const cartan::DeformationInput& read,
+    const cartan::Handles& handles, std::vector<int> moving);
   std::shared_ptr<cartan::Preparation> Prepare(cartan::FilterRun& run,
-    const std::shared_ptr<const cartan::Surface>& surface, const cartan::Handles& handles,
+    const cartan::DeformationInput& read, const cartan::Handles& handles,
     const std::vector<int>& moving, cartan::ContentKey key);
   std::shared_ptr<cartan::HandleArrays> KeepHandleArrays(cartan::FilterRun& run,
     const cartan::Surface& surface, const cartan::Handles& handles, cartan::ContentKey key) const;

@@ -135,6 +135,10 @@ void vtkSurfaceFilter::LookForBlocks()
       }
     }
   }
+  if (!hasBlocks && this->SettledStamp != 0 && this->SettledStamp == this->StampOfInputs())
+  {
+    return; // nor have the others: their inputs, too, are those of the update before
+  }
   const cartan::RankGroup ranks(controller);
   this->HasBlocks = ranks.Any(hasBlocks);
   if (this->HasBlocks)
@@ -161,7 +165,11 @@ vtkTypeBool vtkSurfaceFilter::ProcessRequest(
     }
     // Blocks of one rank concern no other.
     vtkMultiProcessController* controller = cartan::RankGroup::ControllerOf(this);
-    if (controller && !this->HasBlocks && !this->SupportsPieces())
+    if (controller && !this->HasBlocks && this->ServesPiecesOf(controller))
+    {
+      return this->RunOnPieces(request, inputVector, outputVector, controller);
+    }
+    if (controller && !this->HasBlocks)
     {
       return this->RunOnFirstRank(
         request, inputVector, outputVector, cartan::RankGroup(controller));
@@ -171,8 +179,9 @@ vtkTypeBool vtkSurfaceFilter::ProcessRequest(
 }
 
 int vtkSurfaceFilter::RunOnFirstRank(vtkInformation* request, vtkInformationVector** inputVector,
-  vtkInformationVector* outputVector, const cartan::RankGroup& ranks)
+  vtkInformationVector* outputVector, const cartan::RankGroup& ranks, const std::string& reason)
 {
+  this->SettledStamp = 0;
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   this->SetErrorCode(vtkErrorCode::NoError);
   this->ForgetResults();
@@ -194,7 +203,7 @@ int vtkSurfaceFilter::RunOnFirstRank(vtkInformation* request, vtkInformationVect
     [&]
     {
       cartan::StopTogether(this, ranks);
-      warning = gathered.Gather(this->GatherLimit);
+      warning = gathered.Gather(this->GatherLimit, reason);
     });
   if (!outcome.IsSuccess())
   {
@@ -226,6 +235,100 @@ int vtkSurfaceFilter::RunOnFirstRank(vtkInformation* request, vtkInformationVect
   outcome = cartan::RunGuarded(
     [&] { gathered.HandBack(outputVector, this->HandsBackPieces() && !all[1]); });
   return outcome.IsSuccess() ? 1 : end(outcome);
+}
+
+bool vtkSurfaceFilter::ServesPiecesOf(vtkMultiProcessController* controller) const
+{
+  return !this->PrepareInput && this->SupportsPieces() && cartan::PieceGroup::Of(controller);
+}
+
+/// Changes where a producer has run again, as it does on all ranks or on none.
+unsigned long long vtkSurfaceFilter::StampOfInputs()
+{
+  cartan::ContentKey stamp;
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    for (int index = 0; index < this->GetNumberOfInputConnections(port); ++index)
+    {
+      vtkDataObject* input = this->GetInputDataObject(port, index);
+      stamp.Add(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(input)));
+      if (input)
+      {
+        stamp.Add(static_cast<std::uint64_t>(input->GetMTime()));
+        stamp.Add(static_cast<std::uint64_t>(input->GetUpdateTime()));
+      }
+    }
+  }
+  return stamp.GetValue();
+}
+
+int vtkSurfaceFilter::RunOnPieces(vtkInformation* request, vtkInformationVector** inputVector,
+  vtkInformationVector* outputVector, vtkMultiProcessController* controller)
+{
+  this->SetErrorCode(vtkErrorCode::NoError);
+  this->ForgetResults();
+  const unsigned long long stamp = this->StampOfInputs();
+  const bool isSettled = this->MovesAlone() && stamp == this->SettledStamp;
+  this->SettledStamp = 0;
+  cartan::FilterRun run(this, request, inputVector, outputVector, *this->Kept);
+  run.UsePieces(cartan::PieceGroup::Of(controller), isSettled);
+  const auto work = [this, &run] { this->ExecuteOnPieces(run); };
+  cartan::RunOutcome outcome = cartan::RunGuarded(
+    [&]
+    {
+      if (isSettled)
+      {
+        work();
+      }
+      else
+      {
+        run.Together(work);
+      }
+    });
+  if (!run.GetReasonToGather().empty())
+  {
+    this->Kept->Clear();
+    return this->RunOnFirstRank(
+      request, inputVector, outputVector, cartan::RankGroup(controller), run.GetReasonToGather());
+  }
+  if (outcome.IsSuccess() || run.IsAlone())
+  {
+    this->SettledStamp = stamp;
+    this->Kept->KeepUsed();
+  }
+  else
+  {
+    this->Kept->Clear(); // some ranks may have what others have not
+  }
+  if (!outcome.IsSuccess())
+  {
+    this->EmptyOutputs();
+    this->ForgetResults();
+  }
+  if (!outcome.Problem.empty())
+  {
+    this->Numbering = run.GetNumbering();
+    this->ReportProblem(outcome.Problem, !run.IsAlone());
+    this->Numbering.clear();
+  }
+  return 1;
+}
+
+void vtkSurfaceFilter::ExecuteOnPieces(cartan::FilterRun& run)
+{
+  vtkPolyData* input = run.Input();
+  run.Context().Report(0.0);
+  const bool isEmpty = input->GetNumberOfPoints() == 0 && input->GetNumberOfCells() == 0;
+  if (this->AcceptsEmptyInput() && run.AreAllEmpty(isEmpty))
+  {
+    this->EmptyOutputs();
+    return;
+  }
+  this->Execute(run);
+  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
+  {
+    cartan::ShareKeys(input, run.Output(port));
+  }
 }
 
 int vtkSurfaceFilter::RequestData(

@@ -20,8 +20,8 @@
  *   rank gets its piece of an output that has the input's points and cells, with its own ghost
  *   cells. Other outputs are whole on the first rank. Points are joined by their global ids
  *   (the attribute), or else where points of several pieces are in the same place. There is one
- *   warning of that, and beyond GatherLimit an error. A filter that supports pieces does
- *   not join them.
+ *   warning of that, and beyond GatherLimit an error. Filters that say so leave the surface
+ *   where it is: each rank works on its piece, and asks the others for what it needs of them.
  * - A problem on one rank ends the update on all of them, with one message of the first.
  * - What is expensive is kept from one update to the next, found by the contents
  *   that it was made from. The output never depends on earlier updates, inputs
@@ -36,6 +36,8 @@
 
 #include <memory> // For what is kept
 #include <string> // For messages
+
+class vtkMultiProcessController;
 
 namespace cartan
 {
@@ -119,10 +121,18 @@ protected:
   virtual void ForgetResults() {}
 
   /**
-   * Whether Execute() runs on each rank with its own piece of a surface. What it does there
-   * with the other ranks it does on all of them, see cartan::RankGroup. Default: no.
+   * Whether Execute() runs on each rank with its own piece of a surface, with the settings as
+   * they are, which are the same on all ranks. What it does there with the other ranks it does
+   * on all of them, see cartan::FilterRun::Pieces(). Default: no.
    */
   virtual bool SupportsPieces() const { return false; }
+
+  /**
+   * Whether Execute() on pieces tells the other ranks of errors itself, by
+   * cartan::FilterRun::Together(), so that it needs no message where the inputs are those of
+   * the update before. Default: no.
+   */
+  virtual bool MovesAlone() const { return false; }
 
   /**
    * Whether an output that has the points and cells of a joined input is handed back in
@@ -187,12 +197,20 @@ private:
   /// Before each update: whether the ranks have blocks of composite data.
   void LookForBlocks();
   int RunOnFirstRank(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector, const cartan::RankGroup& ranks);
+    vtkInformationVector* outputVector, const cartan::RankGroup& ranks,
+    const std::string& reason = "");
+  int RunOnPieces(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector, vtkMultiProcessController* controller);
+  void ExecuteOnPieces(cartan::FilterRun& run);
+  bool ServesPiecesOf(vtkMultiProcessController* controller) const;
+  unsigned long long StampOfInputs();
 
   std::unique_ptr<cartan::KeptResults> Kept;
   std::string Numbering; // what ids in messages mean while a joined surface is at work
   vtkIdType GatherLimit = 2000000;
   int KeptMemoryLimit = 2000;
+  // Of the inputs whose pieces all ranks have at hand; 0 where there are none.
+  unsigned long long SettledStamp = 0;
   bool HasBlocks = false;
   bool RefusesBlocks = false;
   bool HasWarnedOfGathering = false;

@@ -55,14 +55,15 @@ bool ReportProgress(vtkAlgorithm* algorithm, double fraction)
   return !IsToStop(algorithm);
 }
 
-ExecutionContext MakeContext(vtkAlgorithm* algorithm)
+/// While `waits` is on, nothing stops.
+ExecutionContext MakeContext(vtkAlgorithm* algorithm, const bool& waits)
 {
   return ExecutionContext(
-    [algorithm](int n, const ExecutionContext::Range& body)
+    [algorithm, &waits](int n, const ExecutionContext::Range& body)
     {
       for (int first = 0; first < n; first += Block)
       {
-        if (first > 0 && !ReportProgress(algorithm, algorithm->GetProgress()))
+        if (first > 0 && !ReportProgress(algorithm, algorithm->GetProgress()) && !waits)
         {
           throw Error(ErrorCode::Aborted, "Stopped on request.");
         }
@@ -71,7 +72,7 @@ ExecutionContext MakeContext(vtkAlgorithm* algorithm)
           { body(static_cast<int>(begin), static_cast<int>(end)); });
       }
     },
-    [algorithm](double fraction) { return ReportProgress(algorithm, fraction); });
+    [algorithm, &waits](double fraction) { return ReportProgress(algorithm, fraction) || waits; });
 }
 }
 
@@ -82,7 +83,7 @@ FilterRun::FilterRun(vtkAlgorithm* filter, vtkInformation* request, vtkInformati
   , Inputs(inputs)
   , Outputs(outputs)
   , Kept(kept)
-  , TheContext(MakeContext(filter))
+  , TheContext(MakeContext(filter, this->WorksAlone))
 {
 }
 
@@ -164,6 +165,56 @@ void FilterRun::RestoreOutput()
   this->Warn(RestoreResult(result, this->Input(), this->ConnectedInput(0, 0), this->Output()));
 }
 
+void FilterRun::UsePieces(std::shared_ptr<const PieceGroup> group, bool isSettled)
+{
+  this->Group = std::move(group);
+  this->IsSettled = isSettled;
+}
+
+std::shared_ptr<const PieceSurface> FilterRun::ReadPiece(int port, const std::string& role)
+{
+  vtkPolyData* input = this->Input(port);
+  const auto piece = this->Keep<PieceSurface>(KeyOfPiece(input),
+    [&]
+    {
+      std::string obstacle;
+      auto read = cartan::ReadPiece(input, role, *this->Group, this->Numbering, obstacle);
+      if (!read)
+      {
+        this->GatherInstead(obstacle);
+      }
+      return read;
+    });
+  this->Warn(piece->Warning);
+  this->Diagonal = port == 0 ? piece->Diagonal : this->Diagonal;
+  return piece;
+}
+
+void FilterRun::GatherInstead(const std::string& reason)
+{
+  this->ReasonToGather = reason;
+  throw Error(ErrorCode::BadInput, reason);
+}
+
+void FilterRun::Together(const std::function<void()>& work) const
+{
+  if (this->Group)
+  {
+    this->Group->Together(work);
+  }
+  else
+  {
+    work();
+  }
+}
+
+void FilterRun::Alone(const std::function<void()>& work)
+{
+  this->WorksAlone = this->IsSettled;
+  work();
+  this->WorksAlone = false;
+}
+
 vtkTable* FilterRun::InputTable(int port) const
 {
   return vtkTable::GetData(this->Inputs[port]);
@@ -195,6 +246,10 @@ vtkTable* FilterRun::OutputTable(int port) const
 
 std::shared_ptr<const Surface> FilterRun::ReadSurface(int port, const std::string& role)
 {
+  if (this->Group)
+  {
+    return this->ReadPiece(port, role)->TheSurface;
+  }
   const ExecutionContext context = this->TheContext.Part(0.1 * port, 0.1 * (port + 1));
   const auto surface = cartan::ReadSurface(this->Input(port), role, context);
   this->KeepSurface(surface);
@@ -214,6 +269,14 @@ ContentKey FilterRun::SurfaceKey() const
 }
 
 void FilterRun::Warn(const std::string& text) const
+{
+  if (!this->Group || this->Group->GetRank() == 0)
+  {
+    this->WarnHere(text);
+  }
+}
+
+void FilterRun::WarnHere(const std::string& text) const
 {
   if (!text.empty())
   {

@@ -76,7 +76,7 @@ void GatheredRun::Replace(const Connection& connection, vtkDataObject* data)
     ->Set(vtkDataObject::DATA_OBJECT(), data);
 }
 
-std::string GatheredRun::Gather(vtkIdType limit)
+std::string GatheredRun::Gather(vtkIdType limit, const std::string& reason)
 {
   const std::size_t count = this->Connections.size();
   const std::vector<vtkIdType> counts = this->Ranks.All({ static_cast<vtkIdType>(count) });
@@ -121,11 +121,12 @@ std::string GatheredRun::Gather(vtkIdType limit)
   }
   this->Ranks.Agree(obstacle);
   const std::string what = "The surface is distributed over " + std::to_string(mostRanks) +
-    " ranks, with " + std::to_string(total) + " points in all";
-  this->Ranks.Agree(mostRanks > 1 && total > limit
-      ? what + ", more than GatherLimit (" + std::to_string(limit) +
+    " ranks, with " + std::to_string(total) + " points in all" +
+    (reason.empty() ? "" : ", and cannot stay in pieces, for " + reason);
+  this->Ranks.Agree(mostRanks > 1 && total > limit ? what + (reason.empty() ? ", more" : ": more") +
+        " than GatherLimit (" + std::to_string(limit) +
         ") allows on one rank: raise it if the first rank has the memory, or decimate the surface."
-      : "");
+                                                   : "");
   this->GatherSurfaces();
   return mostRanks > 1 ? what + ": it is gathered on the first, which works alone. " +
       this->TheNumbering + " Fewer ranks leave more threads and memory to the first."

@@ -25,8 +25,9 @@ public:
   ~GatheredRun();
 
   /// Brings the inputs to the first rank. Surfaces in pieces that have more points than `limit`
-  /// in all are refused. Returns a warning where the pieces of several ranks were joined.
-  std::string Gather(vtkIdType limit);
+  /// in all are refused. Returns a warning where the pieces of several ranks were joined, with
+  /// the `reason` if there is one.
+  std::string Gather(vtkIdType limit, const std::string& reason = "");
 
   /// What the filter reads: on the first rank what was gathered.
   vtkInformationVector** Inputs() { return this->Pointers.data(); }

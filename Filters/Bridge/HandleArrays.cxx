@@ -19,37 +19,32 @@
 
 namespace cartan
 {
-namespace
+void Handles::GroupPoints()
 {
-/// Sorts the points by handle.
-void GroupPoints(Handles& handles)
-{
-  for (const int handle : handles.OfVertex)
+  for (const int handle : this->OfVertex)
   {
     // Points come in runs of one handle: most of them need no search.
-    if (handle > 0 && (handles.Ids.empty() || handles.Ids.back() != handle) &&
-      !std::binary_search(handles.Ids.begin(), handles.Ids.end(), handle))
+    if (handle > 0 && (this->Ids.empty() || this->Ids.back() != handle) &&
+      !std::binary_search(this->Ids.begin(), this->Ids.end(), handle))
     {
-      handles.Ids.insert(std::upper_bound(handles.Ids.begin(), handles.Ids.end(), handle), handle);
+      this->Ids.insert(std::upper_bound(this->Ids.begin(), this->Ids.end(), handle), handle);
     }
   }
-  const auto place = [&handles](int handle) {
-    return std::lower_bound(handles.Ids.begin(), handles.Ids.end(), handle) - handles.Ids.begin();
-  };
+  const auto place = [this](int handle)
+  { return std::lower_bound(this->Ids.begin(), this->Ids.end(), handle) - this->Ids.begin(); };
   CountingSort(
-    handles.Ids.size(),
+    this->Ids.size(),
     [&](const auto& visit)
     {
-      for (std::size_t v = 0; v < handles.OfVertex.size(); ++v)
+      for (std::size_t v = 0; v < this->OfVertex.size(); ++v)
       {
-        if (handles.OfVertex[v] > 0)
+        if (this->OfVertex[v] > 0)
         {
-          visit(place(handles.OfVertex[v]), static_cast<int>(v));
+          visit(place(this->OfVertex[v]), static_cast<int>(v));
         }
       }
     },
-    handles.Offsets, handles.Points);
-}
+    this->Offsets, this->Points);
 }
 
 std::vector<int> ReadHandleIds(
@@ -110,14 +105,14 @@ Handles ReadHandles(vtkPolyData* input, const TriangleMesh& mesh, const std::str
   Handles handles;
   handles.OfVertex =
     ReadHandleIds(RequirePointArray(input, name, 1), name, input->GetNumberOfPoints());
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  for (std::size_t v = 0; v < handles.OfVertex.size(); ++v)
   {
-    if (!mesh.IsUsed(v))
+    if (!mesh.IsUsed(static_cast<int>(v)))
     {
       handles.OfVertex[v] = 0;
     }
   }
-  GroupPoints(handles);
+  handles.GroupPoints();
   return handles;
 }
 

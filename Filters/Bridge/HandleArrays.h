@@ -33,6 +33,8 @@ struct Handles
   std::vector<int> Offsets; ///< where each handle's points begin in Points, and the end
 
   bool Has(int id) const;
+  /// Makes Points and Offsets, and adds ids to Ids, from OfVertex.
+  void GroupPoints();
   std::size_t GetBytes() const;
 };
 

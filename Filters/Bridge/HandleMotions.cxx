@@ -183,6 +183,10 @@ Eigen::VectorXd ReadSoftWeights(vtkPolyData* input, const std::string& name, con
   IdSample bad;
   for (const int v : handles.Points)
   {
+    if (v >= array->GetNumberOfTuples())
+    {
+      continue; // a point of another rank
+    }
     weights[v] = array->GetTuple1(v);
     if (!(weights[v] >= 0.0))
     {

@@ -18,6 +18,26 @@ std::shared_ptr<void> KeptResults::Find(const ContentKey& key)
   return found->Object;
 }
 
+bool KeptResults::Contains(const ContentKey& key) const
+{
+  return std::any_of(this->Entries.begin(), this->Entries.end(),
+    [&key](const Entry& entry) { return entry.Key == key; });
+}
+
+void KeptResults::Forget(const ContentKey& key)
+{
+  this->Entries.remove_if([&key](const Entry& entry) { return entry.Key == key; });
+}
+
+void KeptResults::KeepUsed()
+{
+  this->Entries.remove_if([](const Entry& entry) { return !entry.IsUsed; });
+  for (Entry& entry : this->Entries)
+  {
+    entry.IsUsed = false;
+  }
+}
+
 void KeptResults::Insert(const ContentKey& key, std::shared_ptr<void> object, Measure bytes)
 {
   this->Entries.push_front({ key, std::move(object), bytes, true });

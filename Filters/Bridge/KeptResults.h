@@ -33,6 +33,27 @@ public:
     return made;
   }
 
+  /// Whether there is one. That counts as no use of it.
+  template <typename T>
+  bool Has(ContentKey key) const
+  {
+    key.Add(static_cast<std::uint64_t>(typeid(T).hash_code()));
+    return this->Contains(key);
+  }
+
+  /// Keeps an object in place of one under the same key.
+  template <typename T>
+  void Replace(ContentKey key, std::shared_ptr<T> made)
+  {
+    key.Add(static_cast<std::uint64_t>(typeid(T).hash_code()));
+    this->Forget(key);
+    this->Insert(key, std::move(made),
+      [](const void* object) { return static_cast<const T*>(object)->GetBytes(); });
+  }
+
+  /// Gives up all that was not used since the last call, or that of Trim().
+  void KeepUsed();
+
   /// Gives up what was used longest ago until the rest takes at most `limit`
   /// bytes. What was used since the last call stays, whatever it takes.
   void Trim(std::size_t limit);
@@ -51,6 +72,8 @@ private:
   };
 
   std::shared_ptr<void> Find(const ContentKey& key);
+  bool Contains(const ContentKey& key) const;
+  void Forget(const ContentKey& key);
   void Insert(const ContentKey& key, std::shared_ptr<void> object, Measure bytes);
 
   std::list<Entry> Entries; ///< most recently used first

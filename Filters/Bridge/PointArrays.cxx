@@ -54,6 +54,13 @@ void AddValues(vtkDataSetAttributes* attributes, const std::string& name, const 
   std::copy(values, values + numberOfTuples * components, array->GetPointer(0));
   attributes->AddArray(array);
 }
+
+/// The vertices of a piece go on with those of other ranks.
+template <typename Values>
+Eigen::Index CountOf(const Values& values, vtkPolyData* output)
+{
+  return std::min<Eigen::Index>(values.rows(), output->GetNumberOfPoints());
+}
 }
 
 Points ReadPoints(vtkPolyData* input, const ExecutionContext& context)
@@ -118,12 +125,12 @@ void AddArray(vtkDataSetAttributes* attributes, const std::string& name, const F
 
 void AddPointArray(vtkPolyData* output, const std::string& name, const Eigen::VectorXd& values)
 {
-  AddValues(output->GetPointData(), name, values.data(), values.size(), 1);
+  AddValues(output->GetPointData(), name, values.data(), CountOf(values, output), 1);
 }
 
 void AddPointArray(vtkPolyData* output, const std::string& name, const Points& values)
 {
-  AddValues(output->GetPointData(), name, values.data(), values.rows(), 3);
+  AddValues(output->GetPointData(), name, values.data(), CountOf(values, output), 3);
 }
 
 double AddFieldValue(vtkDataObject* output, const std::string& name, double value)

@@ -30,7 +30,7 @@ Field ReadPointArray(vtkPolyData* input, const std::string& name, int components
 /// Adds an array of doubles, a tuple per row of `values`, to point or cell data.
 void AddArray(vtkDataSetAttributes* attributes, const std::string& name, const Field& values);
 
-/// The same for the point data of `output`, scalars or vectors.
+/// The same for the point data of `output`, scalars or vectors; of a piece, those of its points.
 void AddPointArray(vtkPolyData* output, const std::string& name, const Eigen::VectorXd& values);
 void AddPointArray(vtkPolyData* output, const std::string& name, const Points& values);
 

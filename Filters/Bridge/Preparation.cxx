@@ -86,8 +86,8 @@ void DeformAndWrite(Preparation& prepared, const HandleTargets& targets,
   {
     DeformAndCheck(prepared, targets, fields, run, context);
   }
-  run.Warn(DescribeLostDigits(prepared.Problem, prepared.Result));
-  run.Warn(
+  run.WarnHere(DescribeLostDigits(prepared.Problem, prepared.Result));
+  run.WarnHere(
     WriteSurface(surface, prepared.Result.Positions, run.Input(), run.Output(), run.Context()));
 }
 }

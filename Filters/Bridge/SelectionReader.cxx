@@ -162,4 +162,18 @@ void AddSelected(vtkPolyData* evaluated, vtkPolyData* input, PointMask& mask)
     }
   }
 }
+
+bool IsOfRanks(vtkSelection* selection)
+{
+  for (unsigned int n = 0; n < selection->GetNumberOfNodes(); ++n)
+  {
+    vtkInformation* properties = selection->GetNode(n)->GetProperties();
+    if (properties->Has(vtkSelectionNode::PROCESS_ID()) &&
+      properties->Get(vtkSelectionNode::PROCESS_ID()) >= 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
 }

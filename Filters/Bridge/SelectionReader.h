@@ -26,4 +26,7 @@ vtkSmartPointer<vtkDataObject> EvaluateSelection(
 
 /// Adds the points, and those of the cells, that `evaluated` says are selected.
 void AddSelected(vtkPolyData* evaluated, vtkPolyData* input, PointMask& mask);
+
+/// Whether ids are those of one rank, as where points are picked in a view.
+bool IsOfRanks(vtkSelection* selection);
 }

@@ -95,7 +95,8 @@ bool WriteBlocks(const Surface& surface, const PositionRows& rows, double farthe
   vtkDataArray* input, Array* output, const ExecutionContext& context)
 {
   const CoordinateWriter<Array> writer(surface, input, output);
-  const int count = surface.Mesh->NumberOfVertices();
+  // A piece's surface has vertices of other ranks, too.
+  const int count = static_cast<int>(output->GetNumberOfTuples());
   std::atomic<bool> isGood{ true };
   // Over blocks: what a thread does between two of them counts as one step.
   context.For(count / PositionBlock + 1,
@@ -121,6 +122,10 @@ bool WriteBlocks(const Surface& surface, const PositionRows& rows, double farthe
 bool FillPoints(const Surface& surface, const PositionRows& rows, double farthest,
   vtkPolyData* input, vtkPoints* points, const ExecutionContext& context)
 {
+  if (input->GetNumberOfPoints() == 0)
+  {
+    return true;
+  }
   const bool isFloat = input->GetPoints()->GetDataType() == VTK_FLOAT;
   points->SetDataType(isFloat ? VTK_FLOAT : VTK_DOUBLE);
   points->SetNumberOfPoints(input->GetNumberOfPoints());
@@ -134,7 +139,7 @@ bool FillPoints(const Surface& surface, const PositionRows& rows, double farthes
 [[noreturn]] void ThrowNotFinite(const Surface& surface, vtkDataArray* coordinates)
 {
   IdSample bad;
-  for (int v = 0; v < surface.Mesh->NumberOfVertices(); ++v)
+  for (int v = 0; v < static_cast<int>(coordinates->GetNumberOfTuples()); ++v)
   {
     double point[3];
     coordinates->GetTuple(v, point);
@@ -281,8 +286,9 @@ std::string UpdateAllNormals(const Surface& surface, const Points* rest, const P
     UpdateNormals(output->GetCellData(), numberOfCells, "cells", rest, positions,
       [&](const Points& points)
       {
+        // The last is for triangles that only other ranks have.
         return PolygonNormals(
-          points, surface.Mesh->GetTriangles(), surface.Cells->CellIds, numberOfCells);
+          points, surface.Mesh->GetTriangles(), surface.Cells->CellIds, numberOfCells + 1);
       });
   return ofPoints + (ofPoints.empty() || ofCells.empty() ? "" : " ") + ofCells;
 }

@@ -5,12 +5,18 @@
 #include "Kernel/Algebra/ClosestRotation.h"
 #include "Kernel/Algebra/Rotation.h"
 
+#include "vtkPolyData.h"
+
+#include <algorithm>
+
 namespace cartan
 {
 std::string AddTransformArrays(
   const DeformedSurface& result, bool frameChange, bool rotationVector, vtkPolyData* output)
 {
-  const Eigen::Index size = result.Transforms.rows();
+  // A piece has vertices of other ranks, too.
+  const Eigen::Index size =
+    std::min<Eigen::Index>(result.Transforms.rows(), output->GetNumberOfPoints());
   if (frameChange)
   {
     Eigen::VectorXd change(size);

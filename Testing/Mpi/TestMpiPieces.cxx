@@ -221,7 +221,7 @@ TEST(Pieces, KeepNormalsThatAreSplit)
 TEST(Pieces, SayOnceThatTheyAreGathered)
 {
   const auto bar = WithHandles(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 }));
-  const auto filter = Bending<vtkRotationInvariantDeformation>();
+  const auto filter = Bending<vtkLaplacianDeformation>();
   const auto log = vtktest::Observe(filter);
   filter->SetInputData(pieces::MyPieceOf(bar));
   pieces::UpdateTogether(filter);
@@ -234,7 +234,7 @@ TEST(Pieces, SayOnceThatTheyAreGathered)
 TEST(Pieces, HaveALimit)
 {
   const auto bar = WithHandles(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 }));
-  const auto filter = Bending<vtkRotationInvariantDeformation>();
+  const auto filter = Bending<vtkLaplacianDeformation>();
   const auto log = vtktest::Observe(filter);
   filter->SetGatherLimit(100);
   filter->SetInputData(pieces::MyPieceOf(bar));
