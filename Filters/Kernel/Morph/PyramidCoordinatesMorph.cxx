@@ -7,6 +7,7 @@
 #include "Differential/DiscreteForms.h"
 #include "Differential/FrameReconstruction.h"
 #include "Differential/Laplacian.h"
+#include "Differential/PyramidCoordinates.h"
 #include "Morph/LengthErrors.h"
 
 #include <algorithm>
@@ -144,23 +145,13 @@ double PyramidCoordinatesMorph::FitFrames(const Points& positions, const Points&
     {
       for (int v = begin; v < end; ++v)
       {
-        // R_i is the orthogonal factor of sum w e p^T, and
-        // sum w |e - R p|^2 = sum w (|e|^2 + |p|^2) - 2 <R, sum w e p^T>.
-        Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-        for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-        {
-          const Eigen::RowVector3d edge = positions.row(mesh.Neighbor(d)) - positions.row(v);
-          products += this->Weights[d] * edge.transpose() * rings.row(d);
-        }
+        // The rotation closest to the product: the whole ring is fitted, its plane too, and
+        // not the plane of the positions as FitPyramid does.
         const Eigen::Matrix3d frame =
-          ProjectOnRotations(products, Eigen::Matrix3d(MatrixAt(frames, v)));
+          ProjectOnRotations(RingProduct(mesh, positions, rings, this->Weights, v),
+            Eigen::Matrix3d(MatrixAt(frames, v)));
         MatrixAt(frames, v) = frame;
-        for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-        {
-          const Eigen::Vector3d edge =
-            (positions.row(mesh.Neighbor(d)) - positions.row(v)).transpose();
-          sums[v] += this->Weights[d] * (edge - frame * rings.row(d).transpose()).squaredNorm();
-        }
+        sums[v] = RingResidual(mesh, positions, rings, this->Weights, v, frame);
       }
     });
   return sums.sum();
