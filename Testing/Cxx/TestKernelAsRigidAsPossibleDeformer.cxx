@@ -241,7 +241,9 @@ TEST(AsRigidAsPossibleDeformer, SettlesSmoothedRotationsInFewSolves)
   }
   const std::tuple<HandleProblem, HandleTargets, double> cases[] = {
     { MakeProblem(bar, 2), Targets(Turn({ 0.0, 0.0, 2.4 }, Vector3d::Zero())), 0.02 },
+    { MakeProblem(bar, 2), Targets(Turn({ 0.0, 0.0, 2.4 }, Vector3d::Zero())), 0.001 },
     { MakeProblem(bar, 2), BendBar(120.0, 4.4), 0.02 },
+    { MakeProblem(bar, 2), BendBar(120.0, 4.4), 0.001 },
     { pulled, Targets(Turn(Vector3d::Zero(), Vector3d::Zero(), { 0, 0, 0.3 })), 0.02 },
     { pulled, Targets(Turn(Vector3d::Zero(), Vector3d::Zero(), { 0, 0, 0.3 })), 0.002 },
   };
