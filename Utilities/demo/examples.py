@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Ways to say what is wanted: the inside of a body that holds it together, example poses, curves
-on surfaces, and landmarks; what is near a surface follows it. Run by Utilities/demo.sh --examples
+on surfaces, and landmarks; what is near a surface follows it, and tetrahedra follow their skin; the
+strain of a morph. Run by Utilities/demo.sh --examples
 in pvpython; the argument is the build folder. examples.png, a sheet of all, appears in its folder
 demo; what was measured is printed."""
 import os
@@ -20,6 +21,7 @@ from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 from vtkmodules.vtkFiltersSources import vtkPointSource, vtkSphereSource
 
 import cartan_testing
+import solids
 from pictures import Panel, camera_for, draw, heading, one_below_the_other, side_by_side, write_sheet
 from tableone import mark_ends, mark_parts, points_of
 
@@ -330,10 +332,23 @@ def with_points(surface, points):
     return both.GetOutput()
 
 
+def tetrahedra():
+    above, along = ((0.1, -0.8, 0.8), Z), ((0.1, -1, 0.35), Z)
+    return row("Tetrahedra follow their skin", solids.solids(), (above, along, above, along))
+
+
+def strains():
+    """Of a morph of the camel to a pose."""
+    rest = camel((1, 2, 3, 4))
+    last = deformed(vtkShapePreservingDeformation, rest, pose(1.2, -0.6, 1)).GetOutput()
+    return row("Strain of a morph", solids.strains(rest, last), [((1, 0.12, 0.25), Y)] * 4)
+
+
 def main(build):
     folder = os.path.join(build, "demo")
     os.makedirs(folder, exist_ok=True)
-    write_sheet(one_below_the_other([bodies(), poses(), curves(), landmarks()]), folder, "examples")
+    rows = [bodies(), tetrahedra(), poses(), curves(), landmarks(), strains()]
+    write_sheet(one_below_the_other(rows), folder, "examples")
 
 
 if __name__ == "__main__":
