@@ -15,6 +15,9 @@ def main(build):
     load_plugin(build, globals())
     state = os.path.join(build, "demo", "demo.pvsm")
     LoadState(state)
+    names = [name for name, _ in GetSources()]
+    if len(set(names)) < len(names):
+        raise SystemExit(f"{state} has filters of one name.")
     for pose in POSES:
         bent = FindSource(f"{pose.title} deformed")
         if bent is None:
