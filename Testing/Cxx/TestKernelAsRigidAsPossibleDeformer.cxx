@@ -460,6 +460,28 @@ TEST(AsRigidAsPossibleDeformer, CommutesWithRigidMotionsOfEverything)
   }
 }
 
+/// A turn so large that steps are cut short.
+TEST(AsRigidAsPossibleDeformer, CutsStepsAlikeWhateverTheAxes)
+{
+  const Shape bar = shapes::Bar(4, 4, 20, { 1.0, 1.0, 5.0 });
+  const shapes::RigidMotion rigid = shapes::RandomRigidMotion(9, 5.0);
+  HandleTargets targets = Targets(Turn({ 1.0, 0.0, 2.8 }, Vector3d::Zero()));
+  HandleTargets conjugated = targets;
+  HandleMotion& motion = conjugated.Motions[0];
+  motion.Linear = rigid.Rotation * motion.Linear * rigid.Rotation.transpose();
+  motion.Translation += rigid.Translation - motion.Linear * rigid.Translation;
+  HandleProblem problem = MakeProblem(bar, 2);
+  AsRigidAsPossibleDeformer original(
+    problem, RigidityEnergy::SmoothedRotations, InitialGuess::RestShape);
+  problem.Rest = std::make_shared<const Points>(rigid(bar.Positions));
+  AsRigidAsPossibleDeformer moved(
+    problem, RigidityEnergy::SmoothedRotations, InitialGuess::RestShape);
+  original.SetIteration(3, 0.0);
+  moved.SetIteration(3, 0.0);
+  const Points expected = rigid(Deform(original, targets).Positions);
+  EXPECT_LT(Distance(Deform(moved, conjugated).Positions, expected), 1e-9);
+}
+
 TEST(AsRigidAsPossibleDeformer, DoesNotDependOnThreads)
 {
   const Shape shape = shapes::RealMesh("camel");

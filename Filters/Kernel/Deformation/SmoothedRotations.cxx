@@ -19,7 +19,8 @@ constexpr double SufficientDecrease = 1e-4;
 constexpr int Shortenings = 8;
 constexpr double Shortest = 0.1;
 
-/// The largest turn of a vertex in a step, in radians: beyond, slopes tell nothing.
+/// The largest angle by which a vertex turns in a step, in radians: beyond, slopes tell
+/// nothing.
 constexpr double LargestTurn = 1.0;
 }
 
@@ -117,7 +118,8 @@ double AsRigidAsPossibleDeformer::SearchAlong(Eigen::VectorXd& direction, double
 {
   this->Before = this->Rotations;
   const Points positions = this->Current;
-  double t = std::min(1.0, LargestTurn / direction.cwiseAbs().maxCoeff());
+  double t = std::min(
+    1.0, LargestTurn / direction.reshaped(3, direction.size() / 3).colwise().norm().maxCoeff());
   double after = this->Turn(t, direction, targets, step, context);
   for (int i = 0; i < Shortenings && !(after <= before + SufficientDecrease * t * promised); ++i)
   {
