@@ -199,6 +199,55 @@ TEST(ExampleBasedDeformer, TakesTheFirstOfPosesThatFitAlike)
   ExampleBasedDeformer resting(problem, { shapes::RandomRigidMotion(6, 3.0)(bar.Positions), bent });
   Deform(resting, TargetsOf(problem, bar.Positions));
   EXPECT_LT(resting.GetWeights().norm(), 1e-9);
+  // To 1e-9 of the size.
+  ExampleBasedDeformer nearly(
+    problem, { shapes::Noisy({ away, bar.Faces }, 1e-10).Positions, bent });
+  Deform(nearly, TargetsOf(problem, bent));
+  EXPECT_LT((nearly.GetWeights() - Eigen::Vector2d(1.0, 0.0)).norm(), 1e-4);
+}
+
+/// Handles so far away that no weight changes more of the misfit than its last digits.
+TEST(ExampleBasedDeformer, FindsWeightsBySlopesFarFromTheExamples)
+{
+  const Shape bar = Bar();
+  HandleTargets targets;
+  targets.Motions.resize(1);
+  targets.Motions[0].Translation = { 1e8, -3e8, 2e8 };
+  std::vector<double> weights;
+  for (const double noise : { 0.0, 1e-13 })
+  {
+    ExampleBasedDeformer deformer(Problem(shapes::Noisy(bar, noise)), { Pose(bar, 90.0) });
+    Deform(deformer, targets);
+    EXPECT_GT(deformer.GetDistance(), 1e6);
+    weights.push_back(deformer.GetWeights()[0]);
+  }
+  EXPECT_NEAR(weights[1], weights[0], 1e-5 * std::abs(weights[0]));
+}
+
+/// A mirrored handle is no rotation, and the least change chooses none.
+TEST(ExampleBasedDeformer, KeepsTheMotionOfHandlesWhenItBlends)
+{
+  const Shape bar = Bar();
+  const HandleProblem problem = Problem(bar);
+  HandleTargets targets;
+  targets.Motions.resize(1);
+  targets.Motions[0].Linear = -Eigen::Matrix3d::Identity();
+  targets.Motions[0].Translation = { 0.0, 0.0, 11.0 };
+  ExampleBasedDeformer deformer(problem, { Pose(bar, 90.0) });
+  deformer.SetRigidness(0.2);
+  const DeformedSurface result = Deform(deformer, targets);
+  for (std::size_t v = 0; v < problem.Handle.size(); ++v)
+  {
+    const Eigen::Matrix3d transform = cartan::MatrixAt(result.Transforms, static_cast<int>(v));
+    if (problem.Handle[v] == 2)
+    {
+      EXPECT_EQ(transform, targets.Motions[0].Linear);
+    }
+    else
+    {
+      EXPECT_NEAR(transform.determinant(), 1.0, 1e-12);
+    }
+  }
 }
 
 /// Two points hold the surface but for a turn about their line. A bar that is a mirror image

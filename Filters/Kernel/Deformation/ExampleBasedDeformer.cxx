@@ -302,9 +302,14 @@ void ExampleBasedDeformer::BlendWithRigid(
   result.Positions += this->Rigidness * (rigid.Positions - result.Positions);
   for (Eigen::Index v = 0; v < result.Transforms.rows(); ++v)
   {
-    MatrixAt(result.Transforms, v) =
-      ProjectOnRotations((1.0 - this->Rigidness) * MatrixAt(result.Transforms, v) +
-        this->Rigidness * MatrixAt(rigid.Transforms, v));
+    // Handles have their own motion in both, which is no rotation where it mirrors.
+    if (this->MovingHandles[v] < 0)
+    {
+      auto transform = MatrixAt(result.Transforms, v);
+      transform = ClosestRotationNear(
+        (1.0 - this->Rigidness) * transform + this->Rigidness * MatrixAt(rigid.Transforms, v),
+        transform);
+    }
   }
 }
 
@@ -337,7 +342,8 @@ void ExampleBasedDeformer::WriteTransforms(const HandleTargets& targets, Matrice
   }
   for (int i = 0; i < unknowns; ++i)
   {
-    MatrixAt(transforms, this->System.Vertex(i)) = ProjectOnRotations(MatrixAt(sums, i));
+    MatrixAt(transforms, this->System.Vertex(i)) =
+      ClosestRotationNear(MatrixAt(sums, i), this->Rotation);
   }
 }
 }

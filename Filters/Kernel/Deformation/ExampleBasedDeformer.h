@@ -95,7 +95,7 @@ private:
   double SizeOfEdges() const;
   Eigen::VectorXd BestStart(const ExecutionContext& context);
   void Descend(const ExecutionContext& context);
-  double StepDown(double before, Eigen::VectorXd& step, const ExecutionContext& context);
+  bool StepDown(double& energy, Eigen::VectorXd& step, const ExecutionContext& context);
   void BlendWithRigid(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
   void WriteTransforms(const HandleTargets& targets, Matrices& transforms) const;

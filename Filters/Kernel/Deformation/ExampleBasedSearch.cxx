@@ -15,12 +15,19 @@ namespace
 /// The part of E(x = 0) that is made of rounding.
 constexpr double RoundingPart = 1e-24;
 
-/// By which part of E a pose must fit better to count as better.
+/// By which part of E a pose must fit better to count as better, and by which part of
+/// E(x = 0): two poses that fit to 1e-9 of the size fit alike.
 constexpr double BetterFit = 1e-9;
+constexpr double EqualFit = 1e-18;
 
 /// The part of the decrease that the slope promises which a step must bring.
 constexpr double SufficientDecrease = 1e-4;
 constexpr int Halvings = 12;
+
+/// The part of E below which two values differ by rounding, and the part of the slope along
+/// a step that may then be left at its end.
+constexpr double RoundingOfEnergy = 1e-13;
+constexpr double SlopeLeft = 0.9;
 
 /// The largest change of a weight in a step: from one example to the next. Beyond, slopes
 /// tell nothing.
@@ -53,7 +60,7 @@ Eigen::VectorXd ExampleBasedDeformer::BestStart(const ExecutionContext& context)
       weights[k] = 1.0;
     }
     const double energy = this->Evaluate(weights, context);
-    const double negligible = RoundingPart * this->SizeOfEdges();
+    const double negligible = EqualFit * this->SizeOfEdges();
     // The first of those that fit alike.
     if (energy < (1.0 - BetterFit) * least - negligible)
     {
@@ -64,32 +71,35 @@ Eigen::VectorXd ExampleBasedDeformer::BestStart(const ExecutionContext& context)
   return best;
 }
 
-/// Shortens the step until it brings enough; returns the energy there. The energy is not
-/// below `before` if no step brings any.
-double ExampleBasedDeformer::StepDown(
-  double before, Eigen::VectorXd& step, const ExecutionContext& context)
+/// Shortens the step until it brings enough, and tells whether one did; without one, all is as
+/// before. Far from the examples E is made of what no weight changes, and its digits no longer
+/// tell two weights apart. The slope's still do: a step is then good that leaves less of it
+/// (Hager and Zhang, A New Conjugate Gradient Method with Guaranteed Descent and an Efficient
+/// Line Search, 2005, the approximate Wolfe conditions).
+bool ExampleBasedDeformer::StepDown(
+  double& energy, Eigen::VectorXd& step, const ExecutionContext& context)
 {
   const Eigen::VectorXd from = this->Weights;
+  const double before = energy;
   const double slope = this->Slope.dot(step);
   double t = std::min(1.0, LargestStep / step.cwiseAbs().maxCoeff());
-  double after = before;
   for (int i = 0; i < Halvings; ++i)
   {
     this->Weights = from + t * step;
-    after = this->Evaluate(this->Weights, context);
-    if (after <= before + SufficientDecrease * t * slope)
+    energy = this->Evaluate(this->Weights, context);
+    const bool isLower = energy < before && energy <= before + SufficientDecrease * t * slope;
+    const bool isFlatter = std::abs(energy - before) <= RoundingOfEnergy * before &&
+      std::abs(this->Slope.dot(step)) <= SlopeLeft * std::abs(slope);
+    if (isLower || isFlatter)
     {
-      break;
+      step *= t;
+      return true;
     }
     t *= 0.5;
   }
-  step *= t;
-  if (!(after < before))
-  {
-    this->Weights = from;
-    after = this->Evaluate(from, context);
-  }
-  return after;
+  this->Weights = from;
+  energy = this->Evaluate(from, context);
+  return false;
 }
 
 void ExampleBasedDeformer::Descend(const ExecutionContext& context)
@@ -106,16 +116,10 @@ void ExampleBasedDeformer::Descend(const ExecutionContext& context)
   while (!this->Converged && this->Iterations < this->MaximumIterations)
   {
     context.Report(static_cast<double>(this->Iterations) / this->MaximumIterations);
-    const double before = energy;
     const Eigen::VectorXd slope = this->Slope;
     Eigen::VectorXd step = -this->Curvature.ldlt().solve(slope);
-    if (!(slope.dot(step) < 0.0))
-    {
-      step.setZero();
-    }
-    energy = step.isZero(0.0) ? before : this->StepDown(before, step, context);
     ++this->Iterations;
-    if (!(energy < before))
+    if (!(slope.dot(step) < 0.0) || !this->StepDown(energy, step, context))
     {
       // What is left is rounding, unless the curvature was that of another place.
       this->Converged = isFresh;
