@@ -142,28 +142,39 @@ TEST_F(LeastSquaresMeshFilter, RefusesMoreAnchorsThanPointsOrMemory)
   vtktest::ExpectQuiet(*this->Log);
 }
 
-TEST_F(LeastSquaresMeshFilter, PartsThatShrinkToAPointKeepTheirNormals)
+TEST_F(LeastSquaresMeshFilter, PartsThatShrinkToAPointOrALineKeepTheirNormals)
 {
+  const shapes::Shape torus = shapes::Noisy(shapes::Torus(24, 14), 0.02);
   shapes::Shape far = shapes::Noisy(shapes::Torus(24, 14), 0.02, 2);
   far.Positions.rowwise() += Eigen::RowVector3d(7.3, 0.1, -2.7);
-  const shapes::Shape both = shapes::Union(shapes::Noisy(shapes::Torus(24, 14), 0.02), far);
-  this->Input = MakePolyData(both);
-  const auto normals = vtktest::AddArray(this->Input, "Normals", 3,
-    [&both](vtkIdType v, double* value)
-    {
-      const Eigen::Vector3d direction = both.Positions.row(v).transpose().normalized();
-      std::copy(direction.data(), direction.data() + 3, value);
-    });
-  this->Input->GetPointData()->SetNormals(normals);
-  this->Filter->SetInputData(this->Input);
-  this->Filter->SetNumberOfAnchors(2); // one of each part
-  this->Result();
-  vtktest::ExpectQuiet(*this->Log);
-  vtkDataArray* found = this->Filter->GetOutput()->GetPointData()->GetNormals();
-  ASSERT_NE(found, nullptr);
-  for (vtkIdType v = 0; v < found->GetNumberOfTuples(); ++v)
+  // One anchor of each part makes it a point, two anchors make it a line.
+  for (const shapes::Shape& shape : { shapes::Union(torus, far), far })
   {
-    const Eigen::Vector3d expected(normals->GetPointer(3 * v));
-    EXPECT_LT((Eigen::Vector3d(found->GetTuple3(v)) - expected).norm(), 1e-12) << v;
+    this->Input = MakePolyData(shape);
+    const auto normals = vtktest::AddArray(this->Input, "Normals", 3,
+      [&shape](vtkIdType v, double* value)
+      {
+        const Eigen::Vector3d direction = shape.Positions.row(v).transpose().normalized();
+        std::copy(direction.data(), direction.data() + 3, value);
+      });
+    this->Input->GetPointData()->SetNormals(normals);
+    this->Filter->SetInputData(this->Input);
+    this->Filter->SetNumberOfAnchors(2);
+    const cartan::Points result = this->Result();
+    vtktest::ExpectQuiet(*this->Log);
+    double area = 0.0;
+    for (Eigen::Index t = 0; t < shape.Faces.rows(); ++t)
+    {
+      const Eigen::RowVector3d a = result.row(shape.Faces(t, 0));
+      area += (result.row(shape.Faces(t, 1)) - a).cross(result.row(shape.Faces(t, 2)) - a).norm();
+    }
+    EXPECT_LT(area, 1e-9);
+    vtkDataArray* found = this->Filter->GetOutput()->GetPointData()->GetNormals();
+    ASSERT_NE(found, nullptr);
+    for (vtkIdType v = 0; v < found->GetNumberOfTuples(); ++v)
+    {
+      const Eigen::Vector3d expected(normals->GetPointer(3 * v));
+      EXPECT_LT((Eigen::Vector3d(found->GetTuple3(v)) - expected).norm(), 1e-12) << v;
+    }
   }
 }
