@@ -387,8 +387,9 @@ Field ShapePreservingDeformer::Iterate(
     {
       break;
     }
-    this->Residual =
-      (next - eta).cwiseAbs().maxCoeff() / std::max(next.cwiseAbs().maxCoeff(), 1e-300);
+    // Of vectors: their components depend on the axes.
+    this->Residual = std::sqrt((next - eta).rowwise().squaredNorm().maxCoeff() /
+      std::max(next.rowwise().squaredNorm().maxCoeff(), 1e-300));
     eta = std::move(next);
     const double energy = this->Energy(eta, anchors.Stiffness, goals);
     if (!(energy < 1e300))

@@ -20,13 +20,41 @@ Eigen::Vector3d AreaVector(
 {
   return 0.5 * (b - a).cross(c - a);
 }
+
+/// b_v, the differences of the centers around a vertex, each turned with its triangle.
+Eigen::Vector3d TurnedDifferences(const TriangleMesh& mesh, const Points& cornerWeights,
+  const Points& centers, const Matrices& rotations, int v)
+{
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  {
+    const int t = mesh.LeftTriangle(d);
+    if (t < 0)
+    {
+      continue;
+    }
+    const auto corners = mesh.GetTriangles().row(t);
+    const int corner = corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
+    const int next = (corner + 1) % 3;
+    const int last = (corner + 2) % 3;
+    const Eigen::Matrix3d turn = (MatrixAt(rotations, v) + MatrixAt(rotations, corners[next]) +
+                                   MatrixAt(rotations, corners[last])) /
+      3.0;
+    const Eigen::RowVector3d center = centers.row(v);
+    sum += turn *
+      (cornerWeights(t, last) * (center - centers.row(corners[next])) +
+        cornerWeights(t, next) * (center - centers.row(corners[last])))
+        .transpose();
+  }
+  return sum;
+}
 }
 
 LocalVolumes::LocalVolumes(std::shared_ptr<const TriangleMesh> sharedMesh, const Points& reference,
   const ExecutionContext& context)
   : Mesh(std::move(sharedMesh))
   , Positions(reference)
-  , EdgeWeight(EdgeWeights(*this->Mesh, reference, LaplacianWeights::Cotangent, context))
+  , CornerWeight(CornerWeights(*this->Mesh, reference, LaplacianWeights::Cotangent, context))
   , Centers(reference)
 {
   const TriangleMesh& mesh = *this->Mesh;
@@ -40,7 +68,8 @@ LocalVolumes::LocalVolumes(std::shared_ptr<const TriangleMesh> sharedMesh, const
     steps.push_back(length * length);
   }
   this->System.Factorize(
-    Laplacian(mesh, this->EdgeWeight), SmoothingAnchors(mesh, reference, steps), context);
+    Laplacian(mesh, EdgeWeights(mesh, reference, LaplacianWeights::Cotangent, context)),
+    SmoothingAnchors(mesh, reference, steps), context);
   Field centers = reference;
   this->System.Interpolate(centers);
   this->Centers = centers;
@@ -64,16 +93,8 @@ Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionCont
           const Eigen::Vector3d offset =
             (this->Positions.row(v) - this->Centers.row(v)).transpose();
           centers.row(v) -= (MatrixAt(rotations, v) * offset).transpose();
-          Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-          for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-          {
-            const int w = mesh.Neighbor(d);
-            const Eigen::Vector3d difference =
-              (this->Centers.row(v) - this->Centers.row(w)).transpose();
-            sum += 0.5 * this->EdgeWeight[d] *
-              (MatrixAt(rotations, v) * difference + MatrixAt(rotations, w) * difference);
-          }
-          rightHandSide.row(v) = sum.transpose();
+          rightHandSide.row(v) =
+            TurnedDifferences(mesh, this->CornerWeight, this->Centers, rotations, v).transpose();
         }
       });
     this->System.Solve(rightHandSide, centers, context.Part(0.5, 0.9));

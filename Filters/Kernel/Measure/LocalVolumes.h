@@ -35,9 +35,11 @@ namespace cartan
 /// differences of the reference's, turned with the surface:
 ///
 ///   (M + tau L) c' = M (p' - R (p - c)) + tau b,
-///   b_i = sum_j w_ij (R_i + R_j) (c_i - c_j) / 2,   R = FitRotations,
+///   b_i = sum over triangles t and their edges at i of  w_t,ij R_t (c_i - c_j),
 ///
-/// without which smoothing would cut the corner of every bend. Where a
+/// with the mean R_t of the FitRotations at the corners of t: one for all edges of a triangle,
+/// so that the large weights of both signs cancel which a triangle without height has. Without
+/// b smoothing would cut the corner of every bend. Where a
 /// part of the surface moves rigidly, its local volumes stay what they are but
 /// for the change of Volume(c).
 class LocalVolumes
@@ -60,7 +62,7 @@ public:
   {
     return this->System.GetBytes() +
       TotalBytes(
-        this->Positions, this->EnclosesVolume, this->EdgeWeight, this->Centers, this->Reference);
+        this->Positions, this->EnclosesVolume, this->CornerWeight, this->Centers, this->Reference);
   }
 
 private:
@@ -69,7 +71,7 @@ private:
   std::shared_ptr<const TriangleMesh> Mesh;
   Points Positions;
   std::vector<char> EnclosesVolume; // #components
-  Eigen::VectorXd EdgeWeight;       // #D
+  Points CornerWeight;              // #T x 3
   AnchoredSystem System;            // M / tau + L
   Points Centers;
   Eigen::VectorXd Reference;
