@@ -128,7 +128,8 @@ bool IsOfDigits(const Case& of)
   // A ridge follows geodesic distances, whose front takes one of several ways of equal length, as
   // does a source curve that the filter finds.
   const bool hasWays = of.Filter == "CurveDeformation" &&
-    (of.Get("RidgeHeight", 0.0) != 0.0 || of.Get("Source", 0.0) > 0.0);
+    (of.Get("RidgeHeight", 0.0) != 0.0 || of.Get("RidgeTurn", 0.0) != 0.0 ||
+      of.Get("RidgeScale", 1.0) != 1.0 || of.Get("Source", 0.0) > 0.0);
   return hasWays || filters.count(of.Filter) > 0;
 }
 
@@ -327,12 +328,14 @@ std::optional<Finding> CheckOrder(const Case& original, const Outcome& first, Ra
 }
 
 /// Results that number points and cells anew do not survive another order, and some
-/// solvers hold the first point.
+/// solvers hold the first point. A ridge turns points by the stretch of the curve from which a
+/// front reaches them, which may come by several ways of equal length.
 bool KeepsOrder(const Case& of)
 {
+  const bool turnsByWays = of.Filter == "CurveDeformation" && of.Get("RidgeTurn", 0.0) != 0.0;
   const bool holdsFirst = of.Filter == "SurfaceMorph" && of.Get("Method", 0.0) <= 0.0 &&
     of.Get("FrameSolver", 0.0) >= 1.0;
-  return HasPlace(of) && !of.NumbersAnew() && !holdsFirst;
+  return HasPlace(of) && !of.NumbersAnew() && !holdsFirst && !turnsByWays;
 }
 
 std::optional<Finding> CheckHistory(const Case& original, const Outcome& first, Random& random)

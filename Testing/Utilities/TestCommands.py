@@ -54,7 +54,10 @@ def test_names():
     for folder in (ROOT / "Testing").iterdir():
         lists = folder / "CMakeLists.txt"
         if lists.exists():
-            names |= set(re.findall(r"add_test\(NAME ([\w.]+)", lists.read_text(encoding="utf-8")))
+            text = lists.read_text(encoding="utf-8")
+            names |= set(re.findall(r"add_test\(NAME ([\w.]+)", text))
+            for suites in re.findall(r"foreach \(suite IN ITEMS ([\w ]+)\)", text):
+                names |= {f"filter.{suite}On2Ranks" for suite in suites.split()}
     for source in (ROOT / "Testing/Cxx").glob("Test*.cxx"):
         label = "kernel" if source.name.startswith("TestKernel") else "filter"
         names |= {f"{label}.{suite}.{name}" for suite, name in re.findall(

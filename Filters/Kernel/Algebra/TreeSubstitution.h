@@ -192,8 +192,9 @@ private:
 
   /// y_i -= l_ij y_j for the rows below column j, or below a pair of them: `at(i)` is where y_i is.
   template <int Lanes, typename At>
-  static Index Forward(
-    const FactorColumns<Index>& factor, double* work, Index column, Index last, const At& at)
+  static Index Forward(const FactorColumns<Index>& factor,
+    double* work, // NOLINT(readability-non-const-parameter): a Map writes through it
+    Index column, Index last, const At& at)
   {
     const Index begin = factor.Begin[column];
     const Index end = factor.Begin[column + 1];
@@ -222,7 +223,9 @@ private:
   /// x_j = (y_j - sum_i l_ij x_i) / l_jj of column j, or of a pair of it and the one before.
   /// Returns the next column.
   template <int Lanes>
-  static Index Backward(const FactorColumns<Index>& factor, double* work, Index column, Index first)
+  static Index Backward(const FactorColumns<Index>& factor,
+    double* work, // NOLINT(readability-non-const-parameter): a Map writes through it
+    Index column, Index first)
   {
     const Index begin = factor.Begin[column];
     const Index end = factor.Begin[column + 1];
