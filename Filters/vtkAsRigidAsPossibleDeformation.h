@@ -78,10 +78,11 @@ public:
 
   ///@{
   /**
-   * SMOOTHED_ROTATIONS: the weight of the differences between rotations, times
-   * the area of the free points. Without unit. 0 is SPOKES; from 0.1 on a
-   * surface bends like a thick plate; 0.001 keeps lengths better, in more iterations.
-   * Default: 0.02.
+   * SMOOTHED_ROTATIONS: the weight of the differences between rotations, times the
+   * squared thickness of the body that the free points bound; that of open sheets is six
+   * edges. Without unit. 0 is SPOKES; from 1 on a surface bends like a thick plate; less
+   * than the default keeps lengths better, in more iterations, and lets bodies crease.
+   * Default: 0.03.
    */
   vtkSetClampMacro(Bending, double, 0.0, 1e6);
   vtkGetMacro(Bending, double);
@@ -166,7 +167,7 @@ protected:
 
 private:
   int Energy = SPOKES;
-  double Bending = 0.02;
+  double Bending = 0.03;
   int InitialGuess = SHAPE_PRESERVING;
   int MaximumIterations = 10;
   double Tolerance = 1e-4;

@@ -4,6 +4,7 @@
 #include "AdviceWords.h"
 #include "HandleShapes.h"
 #include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Deformation/RegionThickness.h"
 #include "Kernel/Deformation/ShapePreservingDeformer.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "RealMeshes.h"
@@ -89,7 +90,7 @@ double Distance(const Points& a, const Points& b)
 }
 
 /// The sums of the header, term by term over the whole mesh, with the rotations
-/// given. `coupling` is alpha times area.
+/// given. `coupling` is alpha times squared thickness.
 double BruteForceEnergy(const HandleProblem& problem, RigidityEnergy energy,
   const Points& positions, const Matrices& rotations, double coupling)
 {
@@ -133,15 +134,16 @@ double BruteForceEnergy(const HandleProblem& problem, RigidityEnergy energy,
   return sum;
 }
 
+/// alpha times the squared thickness of what is free.
 double Coupling(const HandleProblem& problem, RigidityEnergy energy, double bending)
 {
-  double area = 0.0;
-  const Eigen::VectorXd areas = cartan::MixedVoronoiAreas(*problem.Mesh, *problem.Rest);
-  for (std::size_t v = 0; v < problem.Handle.size(); ++v)
+  std::vector<char> isFree;
+  for (const int handle : problem.Handle)
   {
-    area += problem.Handle[v] == 0 ? areas[static_cast<Eigen::Index>(v)] : 0.0;
+    isFree.push_back(handle == 0 ? 1 : 0);
   }
-  return energy == RigidityEnergy::SmoothedRotations ? bending * area : 0.0;
+  const double thickness = cartan::RegionThickness(*problem.Mesh, *problem.Rest, isFree);
+  return energy == RigidityEnergy::SmoothedRotations ? bending * thickness * thickness : 0.0;
 }
 
 /// A bar along z whose upper end bends by `degrees` about an axis parallel to x
@@ -240,12 +242,12 @@ TEST(AsRigidAsPossibleDeformer, SettlesSmoothedRotationsInFewSolves)
     pulled.Handle[v] = distance < 0.06 ? 2 : distance > 0.45 ? 1 : 0;
   }
   const std::tuple<HandleProblem, HandleTargets, double> cases[] = {
-    { MakeProblem(bar, 2), Targets(Turn({ 0.0, 0.0, 2.4 }, Vector3d::Zero())), 0.02 },
-    { MakeProblem(bar, 2), Targets(Turn({ 0.0, 0.0, 2.4 }, Vector3d::Zero())), 0.001 },
-    { MakeProblem(bar, 2), BendBar(120.0, 4.4), 0.02 },
-    { MakeProblem(bar, 2), BendBar(120.0, 4.4), 0.001 },
-    { pulled, Targets(Turn(Vector3d::Zero(), Vector3d::Zero(), { 0, 0, 0.3 })), 0.02 },
-    { pulled, Targets(Turn(Vector3d::Zero(), Vector3d::Zero(), { 0, 0, 0.3 })), 0.002 },
+    { MakeProblem(bar, 2), Targets(Turn({ 0.0, 0.0, 2.4 }, Vector3d::Zero())), 0.3 },
+    { MakeProblem(bar, 2), Targets(Turn({ 0.0, 0.0, 2.4 }, Vector3d::Zero())), 0.03 },
+    { MakeProblem(bar, 2), BendBar(120.0, 4.4), 0.3 },
+    { MakeProblem(bar, 2), BendBar(120.0, 4.4), 0.03 },
+    { pulled, Targets(Turn(Vector3d::Zero(), Vector3d::Zero(), { 0, 0, 0.3 })), 0.3 },
+    { pulled, Targets(Turn(Vector3d::Zero(), Vector3d::Zero(), { 0, 0, 0.3 })), 0.03 },
   };
   for (const auto& [problem, targets, alpha] : cases)
   {
@@ -736,7 +738,7 @@ TEST(AsRigidAsPossibleDeformer, LeavesWhatNoMovingHandleReachesAsItIs)
       free.Handle[v] = isFree ? 0 : 1;
     }
     const double expected = BruteForceEnergy(
-      problem, energy, result.Positions, result.Transforms, Coupling(free, energy, 0.02));
+      problem, energy, result.Positions, result.Transforms, Coupling(free, energy, 0.03));
     EXPECT_NEAR(deformer.GetEnergies().back(), expected, 1e-11 * expected);
   }
 }

@@ -92,8 +92,8 @@ private:
     this->Scale = product / difference.dot(this->SolvedDifferences.col(k));
   }
 
-  /// How many past steps are seen. More gain little and cost three vectors each.
-  static constexpr int Memory = 6;
+  /// How many past steps are seen. More gain little, and each costs three vectors.
+  static constexpr int Memory = 12;
   static constexpr double SmallestCosine = 1e-10;
 
   int Count = 0;

@@ -5,6 +5,7 @@
 #include "Algebra/ClosestRotation.h"
 #include "Algebra/Rotation.h"
 #include "Deformation/JoinedVertices.h"
+#include "Deformation/RegionThickness.h"
 #include "Mesh/Geometry.h"
 
 #include <cmath>
@@ -45,10 +46,13 @@ AsRigidAsPossibleDeformer::AsRigidAsPossibleDeformer(HandleProblem problem, Rigi
     this->AreCoupled = true;
     const Eigen::VectorXd areas =
       MixedVoronoiAreas(*this->Problem.Mesh, *this->Problem.Rest, context);
+    std::vector<char> isFree(this->Problem.Mesh->NumberOfVertices(), 0);
     for (int i = 0; i < this->System->NumberOfUnknowns(); ++i)
     {
       this->FreeArea += areas[this->Cells.Vertices[i]];
+      isFree[this->Cells.Vertices[i]] = 1;
     }
+    this->Thickness = RegionThickness(*this->Problem.Mesh, *this->Problem.Rest, isFree);
   }
   for (int cell = 0; cell < this->Cells.Count; ++cell)
   {

@@ -32,12 +32,13 @@ enum class RigidityEnergy
 /// Deformations, 2010, section 4; the factor makes it agree with Spokes in
 /// homogeneous strain);
 ///
-///   SmoothedRotations:  Spokes + alpha A sum_i sum_j w_ij |R_i - R_j|^2
+///   SmoothedRotations:  Spokes + alpha d^2 sum_i sum_j w_ij |R_i - R_j|^2
 ///
-/// with A the area of the free vertices and the Frobenius norm (Levi and
+/// with the RegionThickness d of the free vertices and the Frobenius norm (Levi and
 /// Gotsman, Smooth Rotation Enhanced As-Rigid-As-Possible Mesh Animation, 2015,
-/// Eq. 6), which resists bending as a shell does. Vertices that are held softly
-/// with weight w at t add w^2 |x_i - t|^2.
+/// Eq. 6, which has the area in place of d^2), which resists bending as a shell does
+/// whose thickness is a part of the body's: long bodies no more than short ones, and
+/// sheets hardly. Vertices that are held softly with weight w at t add w^2 |x_i - t|^2.
 ///
 /// Weights are HandleProblem::PositionWeights, symmetrized. A cell of Spokes
 /// with negative weights can gain energy by turning at rest: there and in
@@ -57,10 +58,10 @@ enum class RigidityEnergy
 /// that lowers the energy by more than the tolerance, so it still never rises.
 ///
 /// Taking turns hands coupled rotations on from neighbor to neighbor, far too slowly:
-/// from alpha n = 1 on, with n unknown vertices, SmoothedRotations descends by turns of
-/// all rotations at once, with the positions at their best for them. L-BFGS gives the
-/// turns, and the matrix L of the positions serves there too: 8 alpha A L is what couples
-/// rotations. A step is two solves.
+/// from where the root of alpha d^2 is longer than edges on, SmoothedRotations descends by
+/// turns of all rotations at once, with the positions at their best for them. L-BFGS gives
+/// the turns, and the matrix L of the positions serves there too: 8 alpha d^2 L is what
+/// couples rotations. A step is two solves.
 ///
 /// Held vertices whose neighbors are all held get the rotation that fits their
 /// ring, and keep it. With ConstrainPositions off, moving handles are held in
@@ -75,7 +76,7 @@ public:
     SolverBackend backend = SolverBackend::Automatic, const ExecutionContext& context = {});
   ~AsRigidAsPossibleDeformer() override;
 
-  /// alpha >= 0 of SmoothedRotations, without unit. Default: 0.02.
+  /// alpha >= 0 of SmoothedRotations, without unit. Default: 0.03.
   void SetBending(double alpha) { this->Bending = alpha; }
 
   /// How many steps at most, >= 0 (none: the initial guess), and below which
@@ -130,8 +131,11 @@ private:
   double TimesOfBending(int cell, int neighbor) const;
   Eigen::Vector3d ResidualOfSpoke(int spoke, const Eigen::Vector3d& edge,
     const Eigen::Vector3d& restEdge, const Eigen::Vector3d& turned) const;
-  /// alpha A; 0 unless rotations are coupled.
-  double BendingFactor() const { return this->AreCoupled ? this->Bending * this->FreeArea : 0.0; }
+  /// alpha d^2; 0 unless rotations are coupled.
+  double BendingFactor() const
+  {
+    return this->AreCoupled ? this->Bending * this->Thickness * this->Thickness : 0.0;
+  }
   void Start(
     const HandleTargets& targets, DeformedSurface& result, const ExecutionContext& context);
   void SolveCells(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::VectorXd& solution,
@@ -155,7 +159,7 @@ private:
   InitialGuess GuessKind;
   std::unique_ptr<FrameDeformer> Guess;
   std::shared_ptr<const HandleLaplacian> System;
-  double Bending = 0.02;
+  double Bending = 0.03;
   int MaximumIterations = 10;
   double Tolerance = 1e-4;
 
@@ -164,8 +168,9 @@ private:
   bool AreCoupled = false;           // the rotations of neighbors
   std::vector<char> HoldsRotation;   // #cells
   std::vector<int> MovingHandles;    // #V, index in Moving or -1
-  double FreeArea = 0.0;
-  double NegligibleEnergy = 0.0; // rounding makes as much
+  double FreeArea = 0.0;             // with coupled rotations
+  double Thickness = 0.0;            // the same
+  double NegligibleEnergy = 0.0;     // rounding makes as much
 
   Points Rest;                  // #sites x 3
   Points Current;               // #sites x 3

@@ -82,10 +82,10 @@ void AsRigidAsPossibleDeformer::FitRotations(const ExecutionContext& context)
     fitCells(this->Rotations, [&](int cell) { return this->Covariance(cell); });
     return;
   }
-  // Coupled rotations minimize - tr R^T S - alpha A tr R^T (W + D) R, concave in R, as
+  // Coupled rotations minimize - tr R^T S - alpha d^2 tr R^T (W + D) R, concave in R, as
   // W + D with the row sums D of W is not negative; D adds a constant. So the
   // rotations closest to its negative gradient do not raise it, all at once: to
-  // S_i + 2 alpha A sum_j w_ij (R_j + R_i), whatever the order of the cells.
+  // S_i + 2 alpha d^2 sum_j w_ij (R_j + R_i), whatever the order of the cells.
   this->Covariances.resize(this->Cells.ActiveCount, 9);
   for (int sweep = 0; sweep < CoupledSweeps; ++sweep)
   {

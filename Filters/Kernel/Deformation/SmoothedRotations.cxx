@@ -21,23 +21,24 @@ constexpr double Shortest = 0.1;
 
 /// The largest angle by which a vertex turns in a step, in radians: beyond, slopes tell
 /// nothing.
-constexpr double LargestTurn = 1.0;
+constexpr double LargestTurn = 2.0;
 }
 
 /// Fits of one cell after the other hand a turn on from neighbor to neighbor: some
-/// alpha A / h^2 of them for edges of length h, and A / h^2 is about the number of
-/// vertices. Below 1 fits alone do as well.
+/// alpha d^2 / h^2 of them for edges of length h, and h^2 is about the area of a vertex.
+/// Below 1 fits alone do as well.
 bool AsRigidAsPossibleDeformer::CouplesFar() const
 {
-  return this->AreCoupled && this->Bending * this->System->NumberOfUnknowns() > 1.0;
+  return this->AreCoupled &&
+    this->BendingFactor() * this->System->NumberOfUnknowns() > this->FreeArea;
 }
 
 /// What a turn by a small vector o of a cell's rotation, R -> exp(o) R, adds to the energy
 /// is g . o to first order. The energy depends on R through -2 tr R^T T, with
-/// T = S + 2 alpha A sum_j w_ij R_j, so g is twice the axial vector of T R^T.
+/// T = S + 2 alpha d^2 sum_j w_ij R_j, so g is twice the axial vector of T R^T.
 ///
 /// Also P^-1 g, for the part P of the second derivatives by which rotations are coupled:
-/// 8 alpha A L, with the positions' matrix L on unknowns. Held cells beside them have
+/// 8 alpha d^2 L, with the positions' matrix L on unknowns. Held cells beside them have
 /// their diagonal of it and, on average, of the rest.
 void AsRigidAsPossibleDeformer::SlopeOfTurns(
   Eigen::VectorXd& slope, Eigen::VectorXd& solved, const ExecutionContext& context)
