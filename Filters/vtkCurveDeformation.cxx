@@ -9,6 +9,7 @@
 #include "Bridge/PointArrays.h"
 #include "Bridge/PreparedSurface.h"
 #include "Bridge/SurfaceWriter.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Base/Constants.h"
 #include "Kernel/Deformation/CurveDeltas.h"
 #include "Kernel/Deformation/CurveMatch.h"
@@ -16,6 +17,7 @@
 #include "Kernel/Deformation/SliverRemoval.h"
 #include "Kernel/Mesh/EdgePaths.h"
 #include "Kernel/Mesh/GeodesicDistance.h"
+#include "Kernel/Mesh/GeodesicPath.h"
 #include "Kernel/Mesh/Geometry.h"
 
 #include "vtkDataArray.h"
@@ -37,8 +39,9 @@ using cartan::ErrorCode;
 struct vtkCurveDeformation::Curves
 {
   std::vector<int> Path;   ///< points of the surface
-  cartan::Points Source;   ///< #Path x 3
-  cartan::Points Goals;    ///< #Path x 3; empty without a target
+  cartan::Points Source;   ///< #Path x 3, the points or the geodesic's places beside them
+  cartan::Points Vectors;  ///< #Path x 3, the rotations from source to target
+  cartan::Points Goals;    ///< #Path x 3, of the points; empty without a target
   cartan::Points Deformed; ///< #V x 3
 };
 
@@ -192,7 +195,7 @@ void vtkCurveDeformation::UsePreparedInput(cartan::FilterRun&) const
   this->RefusePrepareInput();
 }
 
-std::vector<int> vtkCurveDeformation::FindPath(const cartan::Surface& surface) const
+cartan::CurveAcross vtkCurveDeformation::FindPath(const cartan::Surface& surface) const
 {
   const cartan::TriangleMesh& mesh = *surface.Mesh;
   const cartan::Points& points = *surface.Positions;
@@ -207,9 +210,18 @@ std::vector<int> vtkCurveDeformation::FindPath(const cartan::Surface& surface) c
         (this->ClosedCurve ? ": add points around it, three or more."
                            : ": add the points that it starts and ends at."));
   }
+  const auto through = [&points](std::vector<int> path) -> cartan::CurveAcross
+  {
+    const cartan::Points places = Rows(points, path);
+    return { std::move(path), places };
+  };
   if (this->Source == SELECTED_POINTS)
   {
-    return cartan::ChainVertices(mesh, picks, this->ClosedCurve);
+    return through(cartan::ChainVertices(mesh, picks, this->ClosedCurve));
+  }
+  if (this->Source == GEODESIC)
+  {
+    return cartan::GeodesicThrough(mesh, points, picks, this->ClosedCurve);
   }
   cartan::EdgeMask allowed;
   if (this->Source == FEATURE_EDGES)
@@ -220,16 +232,18 @@ std::vector<int> vtkCurveDeformation::FindPath(const cartan::Surface& surface) c
   {
     allowed = cartan::SilhouetteEdges(mesh, points, Eigen::Vector3d(this->ViewDirection));
   }
-  return isRingThroughOne ? cartan::RingThrough(mesh, points, picks[0], allowed)
-                          : cartan::PathThrough(mesh, points, picks, allowed, this->ClosedCurve);
+  return through(isRingThroughOne
+      ? cartan::RingThrough(mesh, points, picks[0], allowed)
+      : cartan::PathThrough(mesh, points, picks, allowed, this->ClosedCurve));
 }
 
 vtkCurveDeformation::Curves vtkCurveDeformation::ReadCurves(
   cartan::FilterRun& run, const cartan::Surface& surface) const
 {
   Curves curves;
-  curves.Path = this->FindPath(surface);
-  curves.Source = Rows(*surface.Positions, curves.Path);
+  cartan::CurveAcross source = this->FindPath(surface);
+  curves.Path = std::move(source.Vertices);
+  curves.Source = std::move(source.Places);
   vtkPolyData* target = run.Input(1);
   if (!target)
   {
@@ -267,9 +281,19 @@ vtkCurveDeformation::Curves vtkCurveDeformation::ReadCurves(
   curves.Goals = this->ClosedCurve
     ? cartan::MatchClosedCurves(curves.Source, line, keys, this->ReverseTarget)
     : cartan::MatchCurves(curves.Source, line, keys);
-  if ((curves.Goals - curves.Source).rowwise().norm().maxCoeff() <= StillPart * size)
+  curves.Vectors = cartan::CurveRotations(curves.Source, curves.Goals, this->ClosedCurve);
+  // Points beside the curve stay beside it.
+  const cartan::Points rest = Rows(*surface.Positions, curves.Path);
+  for (Eigen::Index i = 0; i < rest.rows(); ++i)
   {
-    curves.Goals = curves.Source;
+    const Eigen::Vector3d beside = (rest.row(i) - curves.Source.row(i)).transpose();
+    curves.Goals.row(i) +=
+      (cartan::RotationFromVector(curves.Vectors.row(i).transpose()) * beside).transpose();
+  }
+  if ((curves.Goals - rest).rowwise().norm().maxCoeff() <= StillPart * size)
+  {
+    curves.Goals = rest;
+    curves.Vectors.setZero();
   }
   return curves;
 }
@@ -346,8 +370,8 @@ void vtkCurveDeformation::Deform(
         cartan::SolverBackend::Automatic, run.Context().Part(0.25, 0.7));
       return fresh;
     });
-  const cartan::HandleTargets targets = cartan::CurveTargets(
-    problem, curves.Path, curves.Goals, this->CurveRotations, this->ClosedCurve);
+  const cartan::HandleTargets targets = cartan::CurveTargets(curves.Path, curves.Goals,
+    this->CurveRotations ? curves.Vectors : cartan::Points::Zero(curves.Goals.rows(), 3));
   cartan::DeformedSurface result;
   prepared->Deformer->Deform(targets, false, result, run.Context().Part(0.7, 0.8));
   run.Warn(prepared->Deformer->GetWarning());

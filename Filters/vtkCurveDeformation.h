@@ -3,7 +3,7 @@
  * @class vtkCurveDeformation
  * @brief deforms a surface so that a curve on it follows a curve that was drawn
  *
- * Sketch-based editing: the *source curve* is a path along edges of the surface, the
+ * Sketch-based editing: the *source curve* is a path on the surface, the
  * *target curve* on port 1 a line, such as a polyline or a spline. Each point of the
  * source curve goes to the place of the target that has the same part of the length,
  * between the ends and between keys; the rest of the surface follows by one of the linear
@@ -42,6 +42,7 @@ class vtkPolyData;
 namespace cartan
 {
 class ContentKey;
+struct CurveAcross;
 struct HandleProblem;
 struct Surface;
 }
@@ -69,25 +70,28 @@ public:
     SELECTED_POINTS = 0,
     SHORTEST_PATH = 1,
     FEATURE_EDGES = 2,
-    SILHOUETTE = 3
+    SILHOUETTE = 3,
+    GEODESIC = 4
   };
 
   ///@{
   /**
    * The source curve. SELECTED_POINTS: PointIds, in any order, that form one line of
-   * edges; it starts at the end that is nearer to the target's start. The others go along
-   * edges from each of PointIds to the next, on the shortest way: SHORTEST_PATH along all
-   * edges; FEATURE_EDGES along those whose triangles are more than FeatureAngle apart, and
+   * edges; it starts at the end that is nearer to the target's start. The others go from
+   * each of PointIds to the next. GEODESIC: on the shortest way across triangles; of each
+   * edge that it crosses the nearer end moves, and stays as far beside the curve as it was.
+   * The others on the shortest way along edges: SHORTEST_PATH along all edges, which
+   * zigzags; FEATURE_EDGES along those whose triangles are more than FeatureAngle apart, and
    * borders; SILHOUETTE along those that a viewer along ViewDirection sees as outline, and
-   * borders. Points beside such edges stand for the nearest one on them. Default:
-   * SHORTEST_PATH.
+   * borders. Points beside such edges stand for the nearest one on them. Default: GEODESIC.
    */
-  vtkSetClampMacro(Source, int, SELECTED_POINTS, SILHOUETTE);
+  vtkSetClampMacro(Source, int, SELECTED_POINTS, GEODESIC);
   vtkGetMacro(Source, int);
   void SetSourceToSelectedPoints() { this->SetSource(SELECTED_POINTS); }
   void SetSourceToShortestPath() { this->SetSource(SHORTEST_PATH); }
   void SetSourceToFeatureEdges() { this->SetSource(FEATURE_EDGES); }
   void SetSourceToSilhouette() { this->SetSource(SILHOUETTE); }
+  void SetSourceToGeodesic() { this->SetSource(GEODESIC); }
   ///@}
 
   ///@{
@@ -191,7 +195,8 @@ public:
   ///@{
   /**
    * The method for the rest of the surface, with the defaults of its filter, but without
-   * volume correction. Default: ROTATION_INVARIANT.
+   * volume correction: any linear one that takes a motion per point, so not Poisson, which
+   * blends one motion per handle. Default: ROTATION_INVARIANT.
    */
   vtkSetClampMacro(Method, int, ROTATION_INVARIANT, MULTIRESOLUTION);
   vtkGetMacro(Method, int);
@@ -285,7 +290,7 @@ protected:
 private:
   struct Curves;
 
-  std::vector<int> FindPath(const cartan::Surface& surface) const;
+  cartan::CurveAcross FindPath(const cartan::Surface& surface) const;
   Curves ReadCurves(cartan::FilterRun& run, const cartan::Surface& surface) const;
   cartan::HandleProblem MakeProblem(
     cartan::FilterRun& run, const cartan::Surface& surface, const std::vector<int>& path) const;
@@ -306,7 +311,7 @@ private:
   double RidgeScale = 1.0;
   double RidgeTurn = 0.0;
   double LargestDistance = 0.0;
-  int Source = SHORTEST_PATH;
+  int Source = GEODESIC;
   int Method = ROTATION_INVARIANT;
   int NumberOfCurvePoints = 0;
   bool ClosedCurve = false;

@@ -170,7 +170,7 @@ inline Subject Curve()
           f->SetPointId(0, 10 + value);
           f->SetPointId(1, 60);
         }),
-      Enumeration<Filter>(4, &Filter::SetSource), Enumeration<Filter>(5, &Filter::SetMethod),
+      Enumeration<Filter>(5, &Filter::SetSource), Enumeration<Filter>(5, &Filter::SetMethod),
       Number<Filter>(&Filter::SetFeatureAngle, { 30.0, 120.0 }),
       Of<Filter>(2, [](Filter* f, int value) { f->SetViewDirection(1.0, 0.3 * value, 0.2); }),
       Number<Filter>(&Filter::SetFidelity, { 1.0, 0.3 }),

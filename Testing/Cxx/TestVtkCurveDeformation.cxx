@@ -3,6 +3,13 @@
 #include "CurveLines.h"
 
 #include "vtkCurveDeformation.h"
+#include "vtkHandleMotion.h"
+#include "vtkLaplacianDeformation.h"
+#include "vtkMatrix4x4.h"
+#include "vtkMultiresolutionDeformation.h"
+#include "vtkRotationInvariantDeformation.h"
+#include "vtkShapePreservingDeformation.h"
+#include "vtkSimilarityDeformation.h"
 
 namespace
 {
@@ -113,6 +120,98 @@ TEST(CurveDeformation, AnAffineImageIsMet)
     EXPECT_LT(sketch.Filter->GetLargestDistance(), 1e-9);
     vtktest::ExpectHandle(result, sketch.Surface, 1);
   }
+}
+
+/// The filters of MethodType.
+std::vector<vtkSmartPointer<vtkSurfaceDeformation>> CarryingFilters()
+{
+  vtkNew<vtkShapePreservingDeformation> shape;
+  shape->SetVolumeCorrectionToNone();
+  return { vtkNew<vtkRotationInvariantDeformation>(), shape, vtkNew<vtkSimilarityDeformation>(),
+    vtkNew<vtkLaplacianDeformation>(), vtkNew<vtkMultiresolutionDeformation>() };
+}
+
+TEST(CurveDeformation, CarriesTheRestAsTheMethodsFiltersDo)
+{
+  // A curve that moves as a whole is a handle with this motion.
+  Sketch sketch;
+  sketch.Path = Row(3, 9, 6);
+  for (int y = 7; y < 10; ++y)
+  {
+    sketch.Path.push_back(Id(9, y));
+  }
+  SetPointIds(sketch.Filter.Get(), sketch.Path);
+  const cartan::Points rest = sketch.Rest();
+  vtkNew<vtkHandleMotion> motion;
+  motion->SetAxis(1.0, 0.3, 0.2);
+  motion->SetAngle(25.0);
+  motion->SetTranslation(0.1, 0.0, 0.4);
+  vtkNew<vtkMatrix4x4> transform;
+  motion->GetTransform(transform);
+  const Eigen::Matrix4d matrix =
+    Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(transform->GetData());
+  sketch.SetTarget((rest * matrix.topLeftCorner<3, 3>().transpose()).rowwise() +
+    matrix.topRightCorner<3, 1>().transpose());
+  const auto marked = vtkSmartPointer<vtkPolyData>::New();
+  marked->DeepCopy(sketch.Surface);
+  vtkDataArray* handles = marked->GetPointData()->GetArray("Handle");
+  for (const vtkIdType id : sketch.Path)
+  {
+    handles->SetTuple1(id, 2.0);
+  }
+  const auto others = CarryingFilters();
+  ASSERT_EQ(static_cast<int>(others.size()), vtkCurveDeformation::MULTIRESOLUTION + 1);
+  for (int method = 0; method < static_cast<int>(others.size()); ++method)
+  {
+    vtkSurfaceDeformation* other = others[static_cast<std::size_t>(method)];
+    other->SetInputData(marked);
+    other->SetHandleMotion(2, motion);
+    other->Update();
+    sketch.Filter->SetMethod(method);
+    const auto result = sketch.Filter.Works();
+    EXPECT_LT((vtktest::PointsOf(result) - vtktest::PointsOf(other->GetOutput())).norm(), 1e-9)
+      << method;
+    EXPECT_GT((vtktest::PointsOf(result) - vtktest::PointsOf(marked)).norm(), 0.1);
+  }
+}
+
+TEST(CurveDeformation, GeodesicsKeepWhatIsBesideThem)
+{
+  // Across the plane's squares, where edges would go along two sides.
+  const auto plane = vtktest::MakePolyData(shapes::Plane(20, 4.0));
+  const vtkIdType from = plane->FindPoint(-1.2, 1.6, 0.0);
+  const vtkIdType to = plane->FindPoint(1.2, -1.4, 0.0);
+  Advised<vtkCurveDeformation> filter;
+  EXPECT_EQ(filter->GetSource(), vtkCurveDeformation::GEODESIC);
+  filter->SetInputData(plane);
+  SetPointIds(filter.Get(), { from, to });
+  cartan::Points ends = PlacesOf(plane, { from, to });
+  filter->SetTargetData(Line(ends));
+  const cartan::Points rest = vtktest::PointsOf(plane);
+  EXPECT_LT((vtktest::PointsOf(filter.Works()) - rest).norm(), 1e-12);
+  EXPECT_GT(filter->GetNumberOfCurvePoints(), 20);
+  // Turned as a whole, the surface goes with it; edges would be drawn to the line.
+  const Eigen::AngleAxisd turn(0.7, Eigen::Vector3d(0.2, 0.1, 1.0).normalized());
+  filter->SetTargetData(Line(ends * turn.toRotationMatrix().transpose()));
+  const cartan::Points turned = vtktest::PointsOf(filter.Works());
+  const Eigen::RowVector3d along =
+    (ends.row(1) - ends.row(0)) * turn.toRotationMatrix().transpose();
+  // The turn about the line is open, so only what is on it is known.
+  const auto distance = [&](vtkIdType v)
+  {
+    const Eigen::Vector3d way =
+      (turned.row(v) - ends.row(0) * turn.toRotationMatrix().transpose()).transpose();
+    return way.cross(along.transpose().normalized()).norm();
+  };
+  const Eigen::RowVector3d flat = ends.row(1) - ends.row(0);
+  for (vtkIdType v = 0; v < plane->GetNumberOfPoints(); ++v)
+  {
+    const Eigen::Vector3d way = (rest.row(v) - ends.row(0)).transpose();
+    EXPECT_NEAR(distance(v), way.cross(flat.transpose().normalized()).norm(), 1e-9);
+  }
+  filter->SetSourceToShortestPath();
+  const cartan::Points drawn = vtktest::PointsOf(filter.Works());
+  EXPECT_GT((drawn - turned).rowwise().norm().maxCoeff(), 0.1);
 }
 
 TEST(CurveDeformation, FidelityGoesFromAHintToTheCurve)

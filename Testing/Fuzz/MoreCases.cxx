@@ -51,7 +51,8 @@ void FindSource(Case& made, Random& random)
   }
   using Class = vtkCurveDeformation;
   made.Settings.push_back(NewSetting("Source", &Class::SetSource,
-    random.Pick<int>({ Class::SHORTEST_PATH, Class::FEATURE_EDGES, Class::SILHOUETTE })));
+    random.Pick<int>(
+      { Class::SHORTEST_PATH, Class::FEATURE_EDGES, Class::SILHOUETTE, Class::GEODESIC })));
   made.Settings.push_back(
     NewSetting("FeatureAngle", &Class::SetFeatureAngle, random.Real(0.0, 60.0)));
   Setting view;

@@ -278,17 +278,9 @@ Points CurveRotations(const Points& source, const Points& moved, bool isClosed)
   return vectors;
 }
 
-HandleTargets CurveTargets(const HandleProblem& problem, const std::vector<int>& path,
-  const Points& goals, bool withRotations, bool isClosed)
+HandleTargets CurveTargets(const std::vector<int>& path, const Points& goals, const Points& vectors)
 {
   const auto count = static_cast<Eigen::Index>(path.size());
-  Points source(count, 3);
-  for (Eigen::Index i = 0; i < count; ++i)
-  {
-    source.row(i) = problem.Rest->row(path[i]);
-  }
-  const Points vectors =
-    withRotations ? CurveRotations(source, goals, isClosed) : Points::Zero(count, 3);
   HandleTargets targets;
   targets.Motions.resize(1);
   targets.Vertices = path;

@@ -44,7 +44,7 @@ Points MatchClosedCurves(
 Points CurveRotations(const Points& source, const Points& moved, bool isClosed = false);
 
 /// The targets of the only moving handle, whose vertices are those of `path`: `goals`
-/// (#path x 3), turned by the rotations of the curve or not at all.
-HandleTargets CurveTargets(const HandleProblem& problem, const std::vector<int>& path,
-  const Points& goals, bool withRotations, bool isClosed = false);
+/// (#path x 3), turned by rotation `vectors` (#path x 3).
+HandleTargets CurveTargets(
+  const std::vector<int>& path, const Points& goals, const Points& vectors);
 }

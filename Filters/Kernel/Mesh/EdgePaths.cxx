@@ -109,6 +109,30 @@ int NearestOnEdges(
   return nearest;
 }
 
+void RefusePath(int from, int to)
+{
+  throw Error(ErrorCode::BadInput,
+    "There is no path along the edges of Source from point " + std::to_string(from) + " to point " +
+      std::to_string(to) +
+      ": choose two points of one such line, another FeatureAngle or ViewDirection, or set "
+      "Source to the shortest path.");
+}
+
+void RequireSimplePath(const std::vector<int>& path, bool isClosed)
+{
+  std::vector<int> sorted = path;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end())
+  {
+    throw Error(ErrorCode::BadInput,
+      "The source curve passes point " + std::to_string(*twice) +
+        (isClosed ? " twice: choose PointIds in the order of a curve that does not cross itself, "
+                    "three or more around it."
+                  : " twice: choose PointIds in the order of a curve that does not cross itself."));
+  }
+}
+
 std::vector<int> PathThrough(const TriangleMesh& mesh, const Points& points,
   const std::vector<int>& picks, const EdgeMask& allowed, bool isClosed)
 {
@@ -124,11 +148,7 @@ std::vector<int> PathThrough(const TriangleMesh& mesh, const Points& points,
       from < 0 || to < 0 ? std::vector<int>() : ShortestEdgePath(mesh, points, from, to, allowed);
     if (part.size() < 2)
     {
-      throw Error(ErrorCode::BadInput,
-        "There is no path along the edges of Source from point " + std::to_string(picks[i]) +
-          " to point " + std::to_string(next) +
-          ": choose two points of one such line, another FeatureAngle or ViewDirection, or set "
-          "Source to the shortest path.");
+      RefusePath(picks[i], next);
     }
     path.insert(path.end(), part.begin() + (path.empty() ? 0 : 1), part.end());
   }
@@ -136,17 +156,7 @@ std::vector<int> PathThrough(const TriangleMesh& mesh, const Points& points,
   {
     path.pop_back(); // the first again
   }
-  std::vector<int> sorted = path;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice != sorted.end())
-  {
-    throw Error(ErrorCode::BadInput,
-      "The source curve passes point " + std::to_string(*twice) +
-        (isClosed ? " twice: choose PointIds in the order of a curve that does not cross itself, "
-                    "three or more around it."
-                  : " twice: choose PointIds in the order of a curve that does not cross itself."));
-  }
+  RequireSimplePath(path, isClosed);
   return path;
 }
 

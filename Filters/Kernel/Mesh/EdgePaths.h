@@ -28,6 +28,12 @@ std::vector<int> ShortestEdgePath(
 int NearestOnEdges(
   const TriangleMesh& mesh, const Points& points, int vertex, const EdgeMask& allowed);
 
+/// Throws Error(BadInput) that there is no path between two picks.
+[[noreturn]] void RefusePath(int from, int to);
+
+/// Throws Error(BadInput) where a path through picks passes a vertex twice.
+void RequireSimplePath(const std::vector<int>& path, bool isClosed);
+
 /// The path from each of `picks` (two or more) to the next, along allowed edges; picks
 /// beside these stand for the nearest vertex on them. With `isClosed` it goes on from the last
 /// to the first, which is not repeated. Throws Error(BadInput) where there is no path, or it
