@@ -54,10 +54,10 @@ class vtkExampleBasedDeformation::Internals
 public:
   vtkNew<vtkDoubleArray> Weights;
 
-  /// The examples over time, and the state of the input that they belong to.
+  /// The examples over time, and the states of their input, and of the surface at rest that
+  /// they are prepared like (0 where they are not), that they belong to.
   cartan::KeyFrameSteps OverTime;
-  vtkMTimeType InputTime = 0;
-  bool IsPrepared = false;
+  std::pair<vtkMTimeType, vtkMTimeType> Times;
   std::pair<int, int> AllSteps() const
   {
     return { 0, static_cast<int>(this->OverTime.Times.size()) };
@@ -139,13 +139,17 @@ int vtkExampleBasedDeformation::RequestInformation(
     const int steps = info->Has(Pipeline::TIME_STEPS()) ? info->Length(Pipeline::TIME_STEPS()) : 0;
     const double* times = info->Get(Pipeline::TIME_STEPS());
     own.OverTime.Times.assign(times, times + steps);
-    auto* upstream = vtkDemandDrivenPipeline::SafeDownCast(this->GetInputExecutive(1, 0));
-    const vtkMTimeType inputTime = upstream ? upstream->GetPipelineMTime() : 0;
-    if (inputTime != own.InputTime || this->GetPrepareInput() != own.IsPrepared)
+    const auto timeOf = [this](int port) -> vtkMTimeType
+    {
+      auto* upstream = vtkDemandDrivenPipeline::SafeDownCast(this->GetInputExecutive(port, 0));
+      return upstream ? upstream->GetPipelineMTime() : 0;
+    };
+    const std::pair<vtkMTimeType, vtkMTimeType> inputTimes = { timeOf(1),
+      this->GetPrepareInput() ? timeOf(0) : 0 };
+    if (inputTimes != own.Times)
     {
       own.OverTime.Steps.clear();
-      own.InputTime = inputTime;
-      own.IsPrepared = this->GetPrepareInput();
+      own.Times = inputTimes;
     }
   }
   else

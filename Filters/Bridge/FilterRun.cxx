@@ -11,6 +11,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkPolyData.h"
 #include "vtkSMPTools.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -126,7 +127,15 @@ void FilterRun::PrepareInputs()
   {
     return;
   }
-  vtkPolyData* model = this->ConnectedInput(places.back().first, 0);
+  // What others are prepared like must be the same for all time steps that come one by one.
+  const auto changes = [this](int port)
+  {
+    vtkInformation* info = this->Filter->GetInputInformation(port, 0);
+    return info && info->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+  };
+  const int last = places.back().first;
+  const int first = places.front().first;
+  vtkPolyData* model = this->ConnectedInput(changes(last) && !changes(first) ? first : last, 0);
   // Progress waits at its begin, where a filter that asks for time steps comes again.
   const auto prepare = [this](vtkPolyData* surface)
   {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Advice.h"
+#include "PrepareShapes.h"
 #include "TimeSource.h"
 
 #include "vtkAsRigidAsPossibleDeformation.h"
@@ -219,6 +220,52 @@ TEST(ExampleBasedDeformation, TakesTimeStepsAsExamples)
   filter->AddExampleConnection(source->GetOutputPort());
   filter.Refuses({ "time step 2 is at 1", Advice("Give each time once, in increasing order.") });
   source->SetSteps({ 0.0, 1.0, 2.0 }, poses);
+  filter.Works();
+}
+
+TEST(ExampleBasedDeformation, PreparesExamplesOverTimeAlike)
+{
+  // Triangles with points of their own, which preparation joins; in one pose opposite sides
+  // touch, whose points it would join, too.
+  const auto soup = vtktest::MakePolyData(shapes::Soup(shapes::Bar(2, 2, 8, { 1.0, 1.0, 4.0 })));
+  vtktest::MarkEnds(soup, 0.6, 3.4);
+  const auto pinched = Bent(soup, -0.5);
+  for (vtkIdType v = 0; v < soup->GetNumberOfPoints(); ++v)
+  {
+    const Eigen::Vector3d rest(soup->GetPoint(v));
+    if (rest[2] == 2.0 && rest[1] == 0.5)
+    {
+      pinched->GetPoints()->SetPoint(v, 0.5, pinched->GetPoint(v)[1], pinched->GetPoint(v)[2]);
+    }
+  }
+  const std::vector<vtkSmartPointer<vtkPolyData>> poses{ Bent(soup, 1.2), pinched };
+  vtkNew<vtktest::TimeSource> source;
+  source->SetSteps({ 0.0, 1.0 }, poses);
+  Advised<vtkExampleBasedDeformation> filter;
+  filter->SetInputData(soup);
+  filter->SetHandleMotion(2, vtktest::Turn(20.0));
+  filter->ExamplesOverTimeOn();
+  filter->PrepareInputOn();
+  filter->AddExampleConnection(source->GetOutputPort());
+  const auto overTime = vtktest::PointsOf(filter.Works());
+  ASSERT_EQ(filter->GetExampleWeights()->GetNumberOfTuples(), 2);
+  // As several surfaces, and the other way round.
+  filter->ExamplesOverTimeOff();
+  filter->RemoveAllExamples();
+  filter->AddExampleData(poses[0]);
+  filter->AddExampleData(poses[1]);
+  EXPECT_EQ(vtktest::PointsOf(filter.Works()), overTime);
+  source->SetSteps({ 0.0, 1.0 }, { poses[1], poses[0] });
+  filter->ExamplesOverTimeOn();
+  filter->RemoveAllExamples();
+  filter->AddExampleConnection(source->GetOutputPort());
+  EXPECT_LT((vtktest::PointsOf(filter.Works()) - overTime).norm(), 1e-6);
+  // Other cells are prepared otherwise.
+  const auto other = vtktest::MakePolyData(shapes::Soup(shapes::Bar(2, 2, 9, { 1.0, 1.0, 4.0 })));
+  source->SetSteps({ 0.0, 1.0 }, { poses[0], other });
+  filter.Refuses(
+    { "example 1 (time 1", Advice("give the same points and cells in the same order.") });
+  source->SetSteps({ 0.0, 1.0 }, poses);
   filter.Works();
 }
 
