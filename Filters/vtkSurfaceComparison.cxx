@@ -3,7 +3,9 @@
 
 #include "Bridge/FilterRun.h"
 #include "Bridge/MatchedSurfaces.h"
+#include "Bridge/PiecePair.h"
 #include "Bridge/SurfacePair.h"
+#include "Kernel/Measure/ShapeDistance.h"
 
 #include "vtkInformation.h"
 #include "vtkPolyData.h"
@@ -47,11 +49,19 @@ void vtkSurfaceComparison::Execute(cartan::FilterRun& run)
     throw cartan::Error(cartan::ErrorCode::BadInput,
       "There is no reference to compare with, such as the surface before it was deformed.");
   }
-  const cartan::MatchedSurfaces matched = cartan::ReadMatchedSurfaces({ input, reference },
-    { "input", "reference" },
+  const std::string advice =
     "Give both the same points and cells in the same order, such as a surface before and after it "
-    "was deformed.",
-    run.Context().Part(0.0, 0.1));
+    "was deformed.";
+  if (run.Pieces())
+  {
+    const cartan::SurfacePair pair =
+      cartan::ReadPiecePair(run, cartan::ShapeDistances::LooksAt, advice);
+    run.Output()->ShallowCopy(input);
+    this->Compare(pair, run);
+    return;
+  }
+  const cartan::MatchedSurfaces matched = cartan::ReadMatchedSurfaces(
+    { input, reference }, { "input", "reference" }, advice, run.Context().Part(0.0, 0.1));
   run.KeepSurface(matched.Surfaces[1]); // the other one is new with every motion
   run.Warn(matched.Warning);
   run.Output()->ShallowCopy(input);

@@ -12,6 +12,7 @@
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -103,7 +104,15 @@ void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun
 {
   const auto reference = run.Keep<cartan::ReferenceMeasures>(pair.ReferenceKey,
     [&]
-    { return std::make_unique<cartan::ReferenceMeasures>(pair, run.Context().Part(0.1, 0.2)); });
+    {
+      auto measures =
+        std::make_unique<cartan::ReferenceMeasures>(pair, run.Context().Part(0.1, 0.2));
+      if (measures->MayEnclose)
+      {
+        run.GatherInstead("one of its components may be inside another");
+      }
+      return measures;
+    });
   const cartan::SurfaceChanges changes(pair, *reference, run.Context().Part(0.2, 0.3));
   vtkPolyData* output = run.Output();
   if (this->ComputeLocalVolume)
@@ -112,7 +121,7 @@ void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun
       [&]
       {
         return std::make_unique<cartan::LocalVolumes>(
-          pair.Mesh, *pair.Reference, run.Context().Part(0.3, 0.8));
+          pair.Mesh, *pair.Reference, run.Context().Part(0.3, 0.8), pair.Pieces);
       });
     const Eigen::VectorXd localVolume =
       volumes->Measure(*pair.Current, run.Context().Part(0.8, 1.0));
@@ -126,7 +135,9 @@ void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun
   {
     this->AddRates(run);
   }
-  this->Results = changes.FillTable(run.OutputTable(1));
+  vtkNew<vtkTable> elsewhere; // one of several ranks shows the table
+  const bool isFirst = !run.Pieces() || run.Pieces()->GetRank() == 0;
+  this->Results = changes.FillTable(isFirst ? run.OutputTable(1) : elsewhere.Get());
   for (const auto& [name, value] : this->Results)
   {
     cartan::AddFieldValue(output, name, value);

@@ -173,6 +173,7 @@ protected:
   vtkVolumeChange();
   ~vtkVolumeChange() override;
 
+  bool SupportsPieces() const override { return !this->ComputeRates; }
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;

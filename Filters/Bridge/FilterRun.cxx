@@ -180,20 +180,22 @@ void FilterRun::UsePieces(std::shared_ptr<const PieceGroup> group, bool isSettle
   this->IsSettled = isSettled;
 }
 
-std::shared_ptr<const PieceSurface> FilterRun::ReadPiece(int port, const std::string& role)
+std::shared_ptr<const PieceSurface> FilterRun::ReadPiece(
+  int port, const std::string& role, const VerticesLookedAt& reach)
 {
   vtkPolyData* input = this->Input(port);
   const auto piece = this->Keep<PieceSurface>(KeyOfPiece(input),
     [&]
     {
       std::string obstacle;
-      auto read = cartan::ReadPiece(input, role, *this->Group, this->Numbering, obstacle);
+      auto read = cartan::ReadPiece(input, role, *this->Group, reach, this->Numbering, obstacle);
       if (!read)
       {
         this->GatherInstead(obstacle);
       }
       return read;
     });
+  this->Numbering = piece->Numbering;
   this->Warn(piece->Warning);
   this->Diagonal = port == 0 ? piece->Diagonal : this->Diagonal;
   return piece;

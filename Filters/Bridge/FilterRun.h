@@ -48,7 +48,8 @@ public:
   bool AreAllEmpty(bool isEmpty) const { return !this->IsSettled && !this->Group->Any(!isEmpty); }
 
   /// The piece on a port, kept for the next update; collective.
-  std::shared_ptr<const PieceSurface> ReadPiece(int port = 0, const std::string& role = "input");
+  std::shared_ptr<const PieceSurface> ReadPiece(
+    int port = 0, const std::string& role = "input", const VerticesLookedAt& reach = {});
 
   /// Of the box around the whole surface whose piece was read from port 0.
   double GetDiagonal() const { return this->Diagonal; }

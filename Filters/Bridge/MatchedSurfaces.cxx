@@ -136,6 +136,12 @@ std::shared_ptr<const Connectivity> CellsOfFirst(
 }
 }
 
+void RequireSameCells(vtkPolyData* first, const std::string& firstRole, vtkPolyData* other,
+  const std::string& otherRole, const std::string& advice)
+{
+  RequireSameConnectivity({ first, firstRole }, { other, otherRole }, advice);
+}
+
 Surface MatchedSurfaces::First() const
 {
   Surface first;

@@ -23,6 +23,11 @@ struct MatchedSurfaces
   Surface First() const;
 };
 
+/// Throws Error(BadInput) where two surfaces differ in their points' number or their cells;
+/// `firstRole` and `otherRole` name them in messages.
+void RequireSameCells(vtkPolyData* first, const std::string& firstRole, vtkPolyData* other,
+  const std::string& otherRole, const std::string& advice);
+
 /// `roles` name the surfaces in messages, `advice` ends those about differences.
 /// Throws Error(BadInput) as ReadSurface does, and when a surface and the first
 /// differ in their points' number or their cells.

@@ -11,6 +11,8 @@
 #include <map>
 #endif
 
+#include <string>
+
 namespace cartan
 {
 #ifdef CARTAN_HAVE_PIECES
@@ -82,4 +84,21 @@ bool PieceGroup::Any(bool value) const
 }
 
 #endif
+
+void PieceGroup::TogetherByRank(const std::function<void()>& work) const
+{
+  this->Together(
+    [&]
+    {
+      try
+      {
+        work();
+      }
+      catch (const Error& error)
+      {
+        throw Error(
+          error.GetCode(), "On rank " + std::to_string(this->GetRank()) + ": " + error.what());
+      }
+    });
+}
 }

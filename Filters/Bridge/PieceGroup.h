@@ -31,6 +31,10 @@ public:
   /// Calls work(), which may be collective. When it throws on some ranks, all throw one error.
   void Together(const std::function<void()>& work) const;
 
+  /// The same, where ids in errors of work() are those of this rank's piece: the error says of
+  /// which rank.
+  void TogetherByRank(const std::function<void()>& work) const;
+
   bool Any(bool value) const;
 
 private:

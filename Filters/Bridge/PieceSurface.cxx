@@ -15,6 +15,7 @@
 #ifdef CARTAN_HAVE_PIECES
 #include "Kernel/Distributed/DistributedMesh.h"
 #include "Kernel/Distributed/LoosePiece.h"
+#include "Kernel/Distributed/WidePiece.h"
 #endif
 
 #include <algorithm>
@@ -35,27 +36,6 @@ ContentKey KeyOfPiece(vtkPolyData* piece)
   key.Add(
     KeyOfArray(piece->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName())).GetValue());
   return key;
-}
-
-namespace
-{
-/// Ids that work() names are those of this rank's piece.
-void OnThisRank(const PieceGroup& group, const std::function<void()>& work)
-{
-  group.Together(
-    [&]
-    {
-      try
-      {
-        work();
-      }
-      catch (const Error& error)
-      {
-        throw Error(
-          error.GetCode(), "On rank " + std::to_string(group.GetRank()) + ": " + error.what());
-      }
-    });
-}
 }
 
 #ifdef CARTAN_HAVE_PIECES
@@ -167,12 +147,13 @@ std::string DescribeOddCells(
 }
 
 std::unique_ptr<PieceSurface> ReadPiece(vtkPolyData* piece, const std::string& role,
-  const PieceGroup& group, std::string& numbering, std::string& obstacle)
+  const PieceGroup& group, const VerticesLookedAt& reach, std::string& numbering,
+  std::string& obstacle)
 {
   const Ranks& ranks = *group.GetRanks();
   PieceTriangles triangles;
   LoosePiece loose;
-  OnThisRank(group,
+  group.TogetherByRank(
     [&]
     {
       triangles = CollectPieceTriangles(piece, role);
@@ -187,7 +168,7 @@ std::unique_ptr<PieceSurface> ReadPiece(vtkPolyData* piece, const std::string& r
         CollectTriangles(nullptr, role);
       }
     });
-  const FittedPiece fitted = FitPiece(loose);
+  FittedPiece fitted = FitPiece(loose);
   numbering = fitted.HasGivenIds
     ? "Ids of points are their global ids."
     : "Ids count the points rank by rank: the pieces have no global ids.";
@@ -196,7 +177,11 @@ std::unique_ptr<PieceSurface> ReadPiece(vtkPolyData* piece, const std::string& r
   {
     return nullptr;
   }
-  const auto mesh = std::make_shared<const DistributedMesh>(fitted.Piece);
+  auto mesh = std::make_shared<const DistributedMesh>(fitted.Piece);
+  if (reach)
+  {
+    mesh = WidenPiece(fitted.Piece, mesh, reach);
+  }
   auto cells = std::make_shared<Connectivity>();
   cells->CellIds = CellsOfTriangles(piece, triangles, fitted.Piece);
   auto surface = std::make_shared<Surface>();
@@ -210,6 +195,7 @@ std::unique_ptr<PieceSurface> ReadPiece(vtkPolyData* piece, const std::string& r
   CheckPositions(
     *surface->Positions, Triangles(surface->Mesh->GetTriangles().topRows(ownTriangles)), report);
   auto result = std::make_unique<PieceSurface>();
+  result->Numbering = numbering;
   result->TheSurface = surface;
   result->Rows = mesh;
   result->Diagonal = mesh->GetDiagonal();
@@ -221,8 +207,8 @@ std::unique_ptr<PieceSurface> ReadPiece(vtkPolyData* piece, const std::string& r
 #else
 
 // There is no group.
-std::unique_ptr<PieceSurface> ReadPiece(
-  vtkPolyData*, const std::string&, const PieceGroup&, std::string&, std::string&)
+std::unique_ptr<PieceSurface> ReadPiece(vtkPolyData*, const std::string&, const PieceGroup&,
+  const VerticesLookedAt&, std::string&, std::string&)
 {
   return nullptr;
 }
@@ -234,7 +220,7 @@ Handles ReadPieceHandles(
 {
   const TriangleMesh& mesh = *surface.TheSurface->Mesh;
   Handles handles;
-  OnThisRank(group,
+  group.TogetherByRank(
     [&]
     {
       if (piece->GetNumberOfPoints() > 0)
@@ -273,7 +259,7 @@ Eigen::VectorXd ReadPieceWeights(vtkPolyData* piece, const PieceSurface& surface
   const PieceGroup& group, const std::string& name, const Handles& handles)
 {
   Field weights = Field::Zero(surface.TheSurface->Mesh->NumberOfVertices(), 1);
-  OnThisRank(group,
+  group.TogetherByRank(
     [&]
     {
       if (piece->GetNumberOfPoints() > 0)

@@ -5,6 +5,7 @@
 #include "Bridge/PieceGroup.h"
 #include "Bridge/SurfaceReader.h"
 #include "Kernel/Algebra/DistributedRows.h"
+#include "Kernel/Mesh/VerticesLookedAt.h"
 
 #include <cstdint>
 #include <memory>
@@ -27,16 +28,19 @@ struct PieceSurface
   std::shared_ptr<const DistributedRows> Rows;
   double Diagonal = 0.0; ///< of the box around the whole
   std::int64_t TotalNumberOfPoints = 0;
-  std::string Warning; ///< the same on all ranks
+  std::string Warning;   ///< the same on all ranks
+  std::string Numbering; ///< what ids in messages mean, a sentence
 
   std::size_t GetBytes() const;
 };
 
 /// Collective. Nothing, and why in `obstacle`, where it cannot be told which points of several
-/// ranks are one. `numbering` becomes a sentence that tells what ids in messages mean. Throws on
-/// all ranks what ReadSurface throws, with ids of all pieces.
+/// ranks are one. With `reach` there are more triangles of other ranks: all around each vertex
+/// that owned ones look at. `numbering` becomes a sentence that tells what ids in messages mean.
+/// Throws on all ranks what ReadSurface throws, with ids of all pieces.
 std::unique_ptr<PieceSurface> ReadPiece(vtkPolyData* piece, const std::string& role,
-  const PieceGroup& group, std::string& numbering, std::string& obstacle);
+  const PieceGroup& group, const VerticesLookedAt& reach, std::string& numbering,
+  std::string& obstacle);
 
 /// Of the input and what ReadPiece looks at beside it.
 ContentKey KeyOfPiece(vtkPolyData* piece);

@@ -22,7 +22,8 @@ Stretches ToCells(const Stretches& triangles, const Connectivity& cells, vtkIdTy
   for (Eigen::Index t = 0; t < triangles.Larger.size(); ++t)
   {
     const Eigen::Index cell = cells.CellIds[t];
-    if (areas[t] > largest[cell])
+    // Triangles of other ranks are of no cell.
+    if (cell < numberOfCells && areas[t] > largest[cell])
     {
       largest[cell] = areas[t];
       result.Larger[cell] = triangles.Larger[t];
@@ -34,12 +35,13 @@ Stretches ToCells(const Stretches& triangles, const Connectivity& cells, vtkIdTy
   return result;
 }
 
-void AddTo(vtkDataSetAttributes* attributes, const Stretches& stretches)
+/// Adds what `add` makes of stretches to points and cells. The vertices of a piece go on with
+/// those of other ranks.
+template <typename Add>
+void AddToBoth(const SurfaceStretches& stretches, vtkPolyData* output, const Add& add)
 {
-  AddArray(attributes, "Stretch1", stretches.Larger);
-  AddArray(attributes, "Stretch2", stretches.Smaller);
-  AddArray(attributes, "StretchDirection1", stretches.LargerDirections);
-  AddArray(attributes, "StretchDirection2", stretches.SmallerDirections);
+  add(output->GetPointData(), stretches.OfPoints, output->GetNumberOfPoints());
+  add(output->GetCellData(), stretches.OfCells, output->GetNumberOfCells());
 }
 }
 
@@ -54,19 +56,26 @@ SurfaceStretches MeasureStretches(const RingStretches& ofPoints, const TriangleM
 
 void AddStretchArrays(const SurfaceStretches& stretches, vtkPolyData* output)
 {
-  AddTo(output->GetPointData(), stretches.OfPoints);
-  AddTo(output->GetCellData(), stretches.OfCells);
+  AddToBoth(stretches, output,
+    [](vtkDataSetAttributes* attributes, const Stretches& of, vtkIdType count)
+    {
+      AddArray(attributes, "Stretch1", of.Larger.head(count));
+      AddArray(attributes, "Stretch2", of.Smaller.head(count));
+      AddArray(attributes, "StretchDirection1", of.LargerDirections.topRows(count));
+      AddArray(attributes, "StretchDirection2", of.SmallerDirections.topRows(count));
+    });
 }
 
 void AddRateArrays(const SurfaceStretches& stretches, double interval, vtkPolyData* output)
 {
-  const auto add = [&](vtkDataSetAttributes* attributes, const Stretches& of)
-  {
-    AddArray(attributes, "StretchRate1", Strains(of.Larger, StrainMeasure::Hencky) / interval);
-    AddArray(attributes, "StretchRate2", Strains(of.Smaller, StrainMeasure::Hencky) / interval);
-  };
-  add(output->GetPointData(), stretches.OfPoints);
-  add(output->GetCellData(), stretches.OfCells);
+  AddToBoth(stretches, output,
+    [interval](vtkDataSetAttributes* attributes, const Stretches& of, vtkIdType count)
+    {
+      const auto rates = [&](const Eigen::VectorXd& values) -> Eigen::VectorXd
+      { return Strains(values.head(count), StrainMeasure::Hencky) / interval; };
+      AddArray(attributes, "StretchRate1", rates(of.Larger));
+      AddArray(attributes, "StretchRate2", rates(of.Smaller));
+    });
 }
 
 void AddStrainArrays(const SurfaceStretches& stretches, StrainMeasure measure, vtkPolyData* output)
@@ -74,12 +83,11 @@ void AddStrainArrays(const SurfaceStretches& stretches, StrainMeasure measure, v
   static const char* const names[] = { "BiotStrain", "GreenLagrangeStrain", "HenckyStrain",
     "EulerAlmansiStrain" };
   const std::string name = names[static_cast<int>(measure)];
-  const auto add = [&](vtkDataSetAttributes* attributes, const Stretches& of)
-  {
-    AddArray(attributes, name + "1", Strains(of.Larger, measure));
-    AddArray(attributes, name + "2", Strains(of.Smaller, measure));
-  };
-  add(output->GetPointData(), stretches.OfPoints);
-  add(output->GetCellData(), stretches.OfCells);
+  AddToBoth(stretches, output,
+    [&](vtkDataSetAttributes* attributes, const Stretches& of, vtkIdType count)
+    {
+      AddArray(attributes, name + "1", Strains(of.Larger.head(count), measure));
+      AddArray(attributes, name + "2", Strains(of.Smaller.head(count), measure));
+    });
 }
 }

@@ -199,10 +199,16 @@ double TotalArea(const std::vector<ComponentVolume>& components)
 }
 
 ReferenceMeasures::ReferenceMeasures(const SurfacePair& pair, const ExecutionContext& context)
-  : Components(MeasureComponents(*pair.Mesh, *pair.Reference))
-  , Enclosing(EnclosingComponents(*pair.Mesh, *pair.Reference, this->Components))
+  : Mesh(pair.Mesh)
+  , Pieces(pair.Pieces)
+  , Parts(*this->Mesh, this->Pieces.get())
+  , Components(MeasureComponents(*pair.Mesh, *pair.Reference, this->Parts))
+  , MayEnclose(pair.Pieces &&
+      MayEncloseEachOther(*pair.Mesh, *pair.Reference, this->Components, this->Parts))
+  , Enclosing(pair.Pieces ? std::vector<int>(this->Components.size(), -1)
+                          : EnclosingComponents(*pair.Mesh, *pair.Reference, this->Components))
   , Areas(TriangleAreas(*pair.Mesh, *pair.Reference, context))
-  , Shape(*pair.Mesh, pair.Reference, context)
+  , Shape(*pair.Mesh, pair.Reference, context, pair.Pieces)
 {
 }
 
@@ -210,8 +216,9 @@ SurfaceChanges::SurfaceChanges(
   const SurfacePair& pair, const ReferenceMeasures& reference, const ExecutionContext& context)
   : Pair(pair)
   , Reference(reference)
-  , Components(MeasureComponents(*pair.Mesh, *pair.Current))
-  , Edges(CompareEdgeLengths(*pair.Mesh, *pair.Reference, *pair.Current, context))
+  , Components(MeasureComponents(*pair.Mesh, *pair.Current, reference.Parts))
+  , Edges(
+      CompareEdgeLengths(*pair.Mesh, *pair.Reference, *pair.Current, context, pair.Pieces.get()))
   , Distance(reference.Shape.Measure(*pair.Current, context))
 {
 }
@@ -224,14 +231,16 @@ void SurfaceChanges::AddArrays(vtkPolyData* output, const ExecutionContext& cont
       BarycentricAreas(*this->Pair.Mesh, areas)));
   AddPointArray(output, "EdgeLengthRatio", this->Edges.VertexRatio);
   AddPointArray(output, "ShapeDistanceDensity", this->Distance.Density);
-  Eigen::VectorXd before = Eigen::VectorXd::Zero(output->GetNumberOfCells());
+  // Triangles of other ranks come last.
+  const vtkIdType cells = output->GetNumberOfCells();
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(cells + 1);
   Eigen::VectorXd now = before;
   for (int t = 0; t < this->Pair.Mesh->NumberOfTriangles(); ++t)
   {
     before[this->Pair.Cells->CellIds[t]] += this->Reference.Areas[t];
     now[this->Pair.Cells->CellIds[t]] += areas[t];
   }
-  AddArray(output->GetCellData(), "AreaRatio", Ratios(before, now));
+  AddArray(output->GetCellData(), "AreaRatio", Ratios(before, now).head(cells));
   output->GetPointData()->SetActiveScalars("AreaRatio");
 }
 

@@ -22,10 +22,16 @@ struct ReferenceMeasures
 
   std::size_t GetBytes() const
   {
-    return TotalBytes(this->Components, this->Enclosing, this->Areas) + this->Shape.GetBytes();
+    return TotalBytes(this->Components, this->Enclosing, this->Areas) + this->Parts.GetBytes() +
+      this->Shape.GetBytes();
   }
 
+  std::shared_ptr<const TriangleMesh> Mesh;
+  std::shared_ptr<const DistributedRows> Pieces;
+  SurfaceComponents Parts;
   std::vector<ComponentVolume> Components;
+  /// Of pieces: which component is inside another has to be found out, and is not.
+  bool MayEnclose;
   std::vector<int> Enclosing; ///< the component around each one, -1 if there is none
   Eigen::VectorXd Areas;      ///< of triangles: #T
   ShapeDistances Shape;

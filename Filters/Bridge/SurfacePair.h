@@ -3,6 +3,7 @@
 
 #include "Bridge/ContentKey.h"
 #include "Bridge/SurfaceReader.h"
+#include "Kernel/Algebra/DistributedRows.h"
 
 namespace cartan
 {
@@ -15,5 +16,6 @@ struct SurfacePair
   std::shared_ptr<const Points> Current;     ///< #V x 3, about the current surface's own center
   CoincidentBorders Borders;                 ///< of the reference
   ContentKey ReferenceKey;                   ///< of the reference as it is used here
+  std::shared_ptr<const DistributedRows> Pieces = nullptr; ///< of a surface in pieces
 };
 }

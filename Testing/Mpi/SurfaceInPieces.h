@@ -216,6 +216,22 @@ inline double ArrayDifference(vtkPolyData* piece, vtkPolyData* whole, const char
   return most / size;
 }
 
+/// The largest difference of unit vectors at the points, which may point either way.
+inline double AxisDifference(vtkPolyData* piece, vtkPolyData* whole, const char* name)
+{
+  double most = 0.0;
+  vtkDataArray* ids = piece->GetPointData()->GetArray("Id");
+  vtkDataArray* here = piece->GetPointData()->GetArray(name);
+  vtkDataArray* there = whole->GetPointData()->GetArray(name);
+  for (vtkIdType v = 0; v < piece->GetNumberOfPoints(); ++v)
+  {
+    const Eigen::Vector3d a(here->GetTuple3(v));
+    const Eigen::Vector3d b(there->GetTuple3(static_cast<vtkIdType>(ids->GetTuple1(v))));
+    most = std::max(most, std::min((a - b).norm(), (a + b).norm()));
+  }
+  return most;
+}
+
 /// One message, of the first rank.
 inline void ExpectOneMessage(
   const std::vector<std::string>& messages, const std::vector<std::string>& parts)

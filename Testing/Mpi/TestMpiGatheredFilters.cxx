@@ -31,6 +31,17 @@ class InPieces : public testing::TestWithParam<Subject>
 {
 };
 
+/// Where nothing is deformed, a shape distance is rounding.
+bool IsRounding(vtkPolyData* surface, const std::string& name)
+{
+  double range[2] = { 0.0, 0.0 };
+  if (vtkDataArray* array = surface->GetPointData()->GetArray(name.c_str()))
+  {
+    array->GetRange(range);
+  }
+  return range[1] < 1e-12;
+}
+
 /// The arrays of `whole` are in the piece with the same values.
 void ExpectSameArrays(vtkPolyData* piece, vtkPolyData* whole)
 {
@@ -38,7 +49,14 @@ void ExpectSameArrays(vtkPolyData* piece, vtkPolyData* whole)
   for (int index = 0; index < arrays->GetNumberOfArrays(); ++index)
   {
     const std::string name = arrays->GetArrayName(index);
-    EXPECT_LT(pieces::ArrayDifference(piece, whole, name.c_str()), 1e-8) << name;
+    if (name.find("StretchDirection") == 0)
+    {
+      EXPECT_LT(pieces::AxisDifference(piece, whole, name.c_str()), 1e-6) << name;
+    }
+    else if (name != "ShapeDistanceDensity" || !IsRounding(piece, name) || !IsRounding(whole, name))
+    {
+      EXPECT_LT(pieces::ArrayDifference(piece, whole, name.c_str()), 1e-8) << name;
+    }
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include "Algebra/AnchoredSystem.h"
 #include "Deformation/HandleProblem.h"
-#include "Deformation/PieceSystem.h"
+#include "Differential/PieceSystem.h"
 
 #include <algorithm>
 #include <functional>

@@ -2,10 +2,10 @@
 #include "Distributed/LoosePiece.h"
 
 #include "Distributed/Halo.h"
+#include "Distributed/TriangleMessages.h"
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <tuple>
 #include <unordered_map>
@@ -15,21 +15,6 @@ namespace cartan
 {
 namespace
 {
-std::int64_t BitsOf(double value)
-{
-  value = value == 0.0 ? 0.0 : value; // zero has two kinds
-  std::int64_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-
-double ValueOf(std::int64_t bits)
-{
-  double value = 0.0;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
 /// A point as the rank hears of it that finds out who has it.
 struct Claim
 {
@@ -265,95 +250,38 @@ private:
 };
 
 /// Sends the triangles at shared points to the ranks that have these.
-class TriangleExchange
+void ExchangeTriangles(SurfacePiece& piece, const std::unordered_map<int, SharedPoint>& shared)
 {
-public:
-  TriangleExchange(SurfacePiece& piece, const std::unordered_map<int, SharedPoint>& shared)
-    : Piece(piece)
-    , Shared(shared)
+  std::vector<std::vector<std::int64_t>> sent(static_cast<std::size_t>(piece.Group->GetSize()));
+  std::vector<int> ranks;
+  for (Eigen::Index t = 0; t < piece.Corners.rows(); ++t)
   {
-    for (const auto& entry : shared)
+    ranks.clear();
+    for (int c = 0; c < 3; ++c)
     {
-      this->PointOfId[piece.GlobalIds[entry.first]] = entry.first;
-    }
-  }
-
-  void Run()
-  {
-    const std::vector<std::vector<std::int64_t>> received =
-      this->Piece.Group->Exchange(this->Sent());
-    std::vector<int> corners(
-      this->Piece.Corners.data(), this->Piece.Corners.data() + this->Piece.Corners.size());
-    std::vector<double> places(
-      this->Piece.Positions.data(), this->Piece.Positions.data() + this->Piece.Positions.size());
-    for (const std::vector<std::int64_t>& list : received)
-    {
-      for (std::size_t at = 0; at < list.size(); at += CornerSize)
+      const auto found = shared.find(piece.Corners(t, c));
+      if (found != shared.end())
       {
-        const auto known = this->PointOfId.find(list[at]);
-        if (known != this->PointOfId.end())
-        {
-          corners.push_back(known->second);
-          continue;
-        }
-        const int point = static_cast<int>(this->Piece.GlobalIds.size());
-        this->PointOfId.emplace(list[at], point);
-        this->Piece.GlobalIds.push_back(list[at]);
-        this->Piece.Owners.push_back(static_cast<int>(list[at + 1]));
-        for (std::size_t c = 0; c < 3; ++c)
-        {
-          places.push_back(ValueOf(list[at + 2 + c]));
-        }
-        corners.push_back(point);
+        ranks.insert(ranks.end(), found->second.Ranks.begin(), found->second.Ranks.end());
       }
     }
-    this->Piece.Corners =
-      Eigen::Map<const Triangles>(corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
-    this->Piece.Positions =
-      Eigen::Map<const Points>(places.data(), static_cast<Eigen::Index>(places.size() / 3), 3);
-  }
-
-private:
-  /// A corner in a message: its point's global id, owner and place.
-  static constexpr std::size_t CornerSize = 5;
-
-  std::vector<std::vector<std::int64_t>> Sent() const
-  {
-    std::vector<std::vector<std::int64_t>> sent(
-      static_cast<std::size_t>(this->Piece.Group->GetSize()));
-    std::vector<int> ranks;
-    for (Eigen::Index t = 0; t < this->Piece.Corners.rows(); ++t)
+    std::sort(ranks.begin(), ranks.end());
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+    for (const int rank : ranks)
     {
-      ranks.clear();
-      for (int c = 0; c < 3; ++c)
+      if (rank != piece.Group->GetRank())
       {
-        const auto found = this->Shared.find(this->Piece.Corners(t, c));
-        if (found != this->Shared.end())
-        {
-          ranks.insert(ranks.end(), found->second.Ranks.begin(), found->second.Ranks.end());
-        }
-      }
-      std::sort(ranks.begin(), ranks.end());
-      ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
-      for (const int rank : ranks)
-      {
-        for (int c = 0; c < 3 && rank != this->Piece.Group->GetRank(); ++c)
-        {
-          const int v = this->Piece.Corners(t, c);
-          const auto place = this->Piece.Positions.row(v);
-          sent[rank].insert(sent[rank].end(),
-            { this->Piece.GlobalIds[v], this->Piece.Owners[v], BitsOf(place[0]), BitsOf(place[1]),
-              BitsOf(place[2]) });
-        }
+        AppendTriangle(piece, t, sent[rank]);
       }
     }
-    return sent;
   }
-
-  SurfacePiece& Piece;
-  const std::unordered_map<int, SharedPoint>& Shared;
-  std::unordered_map<std::int64_t, int> PointOfId;
-};
+  std::vector<int> points;
+  for (const auto& entry : shared)
+  {
+    points.push_back(entry.first);
+  }
+  TriangleReceiver(piece, points, false).Add(piece.Group->Exchange(sent));
+}
 
 void RequireIds(const LoosePiece& loose)
 {
@@ -426,7 +354,7 @@ FittedPiece FitPiece(const LoosePiece& loose)
   {
     return fitted;
   }
-  TriangleExchange(piece, shared).Run();
+  ExchangeTriangles(piece, shared);
   if (fitted.HasGivenIds)
   {
     Halo(piece, {}).Update(piece.Positions);

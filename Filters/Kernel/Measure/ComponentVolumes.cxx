@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace cartan
@@ -22,15 +23,27 @@ int ComponentOfTriangle(const TriangleMesh& mesh, int t)
   return mesh.Component(mesh.GetTriangles()(t, 0));
 }
 
-std::vector<Eigen::AlignedBox3d> ComponentBoxes(const TriangleMesh& mesh, const Points& points)
+std::vector<Eigen::AlignedBox3d> ComponentBoxes(
+  const TriangleMesh& mesh, const Points& points, const SurfaceComponents& parts)
 {
-  std::vector<Eigen::AlignedBox3d> boxes(mesh.NumberOfComponents());
+  constexpr double Infinity = std::numeric_limits<double>::infinity();
+  const Eigen::Index count = parts.GetCount();
+  Eigen::VectorXd extremes = Eigen::VectorXd::Constant(6 * count, -Infinity); // of x and -x
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    if (mesh.IsUsed(v))
+    if (parts.CountsVertex(v))
     {
-      boxes[mesh.Component(v)].extend(points.row(v).transpose());
+      auto box = extremes.segment<6>(6 * parts.OfVertex(v));
+      const Eigen::Vector3d point = points.row(v).transpose();
+      box.head<3>() = box.head<3>().cwiseMax(point);
+      box.tail<3>() = box.tail<3>().cwiseMax(-point);
     }
+  }
+  parts.Max(extremes);
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (Eigen::Index c = 0; c < count; ++c)
+  {
+    boxes.emplace_back(-extremes.segment<3>(6 * c + 3), extremes.segment<3>(6 * c));
   }
   return boxes;
 }
@@ -137,34 +150,64 @@ bool ComponentVolume::EnclosesVolume() const
 
 std::vector<ComponentVolume> MeasureComponents(const TriangleMesh& mesh, const Points& points)
 {
-  const Points centers = ComponentCenters(mesh, points);
-  std::vector<ComponentVolume> components(mesh.NumberOfComponents());
+  return MeasureComponents(mesh, points, SurfaceComponents(mesh));
+}
+
+std::vector<ComponentVolume> MeasureComponents(
+  const TriangleMesh& mesh, const Points& points, const SurfaceComponents& parts)
+{
+  const Eigen::Index count = parts.GetCount();
+  // Of each component the sum of its vertices, their number, and that of its border's.
+  Eigen::VectorXd ofVertices = Eigen::VectorXd::Zero(5 * count);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    if (mesh.IsBoundary(v))
+    if (parts.CountsVertex(v))
     {
-      components[mesh.Component(v)].IsClosed = false;
+      auto sums = ofVertices.segment<5>(5 * parts.OfVertex(v));
+      sums.head<3>() += points.row(v).transpose();
+      sums[3] += 1.0;
+      sums[4] += mesh.IsBoundary(v) ? 1.0 : 0.0;
     }
   }
+  parts.Sum(ofVertices);
+  Eigen::VectorXd ofTriangles = Eigen::VectorXd::Zero(2 * count);
   for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    const int component = ComponentOfTriangle(mesh, t);
-    const Eigen::Vector3d center = centers.row(component).transpose();
+    if (!parts.CountsTriangle(t))
+    {
+      continue;
+    }
+    const Eigen::Index component = parts.OfTriangle(t);
+    const auto sums = ofVertices.segment<5>(5 * component);
+    const Eigen::Vector3d center = sums.head<3>() / sums[3];
     const Eigen::Vector3d a = Corner(mesh, points, t, 0) - center;
     const Eigen::Vector3d b = Corner(mesh, points, t, 1) - center;
     const Eigen::Vector3d c = Corner(mesh, points, t, 2) - center;
     // The tetrahedron between the triangle and the center.
-    components[component].Volume += a.dot(b.cross(c)) / 6.0;
-    components[component].Area += 0.5 * (b - a).cross(c - a).norm();
+    ofTriangles[2 * component] += a.dot(b.cross(c)) / 6.0;
+    ofTriangles[2 * component + 1] += 0.5 * (b - a).cross(c - a).norm();
+  }
+  parts.Sum(ofTriangles);
+  std::vector<ComponentVolume> components;
+  for (Eigen::Index c = 0; c < count; ++c)
+  {
+    components.push_back(
+      { ofTriangles[2 * c], ofTriangles[2 * c + 1], ofVertices[5 * c + 4] == 0.0 });
   }
   return components;
+}
+
+bool MayEncloseEachOther(const TriangleMesh& mesh, const Points& points,
+  const std::vector<ComponentVolume>& components, const SurfaceComponents& parts)
+{
+  return parts.GetCount() > 1 && IsAnyBoxInside(ComponentBoxes(mesh, points, parts), components);
 }
 
 std::vector<int> EnclosingComponents(
   const TriangleMesh& mesh, const Points& points, const std::vector<ComponentVolume>& components)
 {
   std::vector<int> enclosing(components.size(), -1);
-  if (!IsAnyBoxInside(ComponentBoxes(mesh, points), components))
+  if (!MayEncloseEachOther(mesh, points, components, SurfaceComponents(mesh)))
   {
     return enclosing;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Mesh/TriangleMesh.h"
+#include "Measure/SurfaceComponents.h"
 
 #include <vector>
 
@@ -23,6 +23,15 @@ struct ComponentVolume
 
 /// One entry per component of the mesh.
 std::vector<ComponentVolume> MeasureComponents(const TriangleMesh& mesh, const Points& points);
+
+/// The same of a surface that may be in pieces; collective then.
+std::vector<ComponentVolume> MeasureComponents(
+  const TriangleMesh& mesh, const Points& points, const SurfaceComponents& parts);
+
+/// Whether the bounding box of a component that encloses volume is inside of another's: if not,
+/// none encloses another. Of pieces collective.
+bool MayEncloseEachOther(const TriangleMesh& mesh, const Points& points,
+  const std::vector<ComponentVolume>& components, const SurfaceComponents& parts);
 
 /// For each component the one that encloses volume directly around it; -1 where
 /// there is none, and for those that enclose no volume themselves. A cavity has the body

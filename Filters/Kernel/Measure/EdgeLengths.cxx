@@ -10,10 +10,55 @@ namespace cartan
 namespace
 {
 constexpr double Undefined = std::numeric_limits<double>::quiet_NaN();
+
+/// What all edges together have: of their `ratios` (#D).
+void Summarize(const TriangleMesh& mesh, const Eigen::VectorXd& ratios,
+  const DistributedRows* pieces, EdgeLengthChange& change)
+{
+  // Of a piece the owner of the end with the lower name counts an edge.
+  const auto isCounted = [&](int v, int w)
+  { return pieces ? pieces->IsOwned(v) && pieces->GetName(v) < pieces->GetName(w) : v <= w; };
+  Eigen::Vector2d sums = Eigen::Vector2d::Zero(); // of squares, and the count
+  std::vector<std::int64_t> ofNoLength;
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+    {
+      if (!isCounted(v, mesh.Neighbor(d)))
+      {
+        continue;
+      }
+      if (std::isnan(ratios[d]))
+      {
+        ofNoLength.push_back(pieces ? pieces->GetName(v) : v);
+        continue;
+      }
+      const double relative = ratios[d] - 1.0;
+      sums += Eigen::Vector2d(relative * relative, 1.0);
+      change.Maximum = std::max(change.Maximum, std::abs(relative));
+    }
+  }
+  if (pieces)
+  {
+    Eigen::VectorXd ofAll = sums;
+    pieces->Sum(ofAll);
+    sums = ofAll;
+    Eigen::VectorXd most = Eigen::VectorXd::Constant(1, change.Maximum);
+    pieces->Max(most);
+    change.Maximum = most[0];
+    ofNoLength = pieces->Gather(ofNoLength);
+    std::sort(ofNoLength.begin(), ofNoLength.end());
+  }
+  for (const std::int64_t id : ofNoLength)
+  {
+    change.ZeroLength.Add(id);
+  }
+  change.RootMeanSquare = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
+}
 }
 
 EdgeLengthChange CompareEdgeLengths(const TriangleMesh& mesh, const Points& reference,
-  const Points& current, const ExecutionContext& context)
+  const Points& current, const ExecutionContext& context, const DistributedRows* pieces)
 {
   EdgeLengthChange change;
   change.VertexRatio = Eigen::VectorXd::Ones(mesh.NumberOfVertices());
@@ -43,28 +88,7 @@ EdgeLengthChange CompareEdgeLengths(const TriangleMesh& mesh, const Points& refe
         }
       }
     });
-  double squares = 0.0;
-  int count = 0;
-  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-    {
-      if (v > mesh.Neighbor(d))
-      {
-        continue;
-      }
-      if (std::isnan(ratios[d]))
-      {
-        change.ZeroLength.Add(v);
-        continue;
-      }
-      const double relative = ratios[d] - 1.0;
-      squares += relative * relative;
-      change.Maximum = std::max(change.Maximum, std::abs(relative));
-      ++count;
-    }
-  }
-  change.RootMeanSquare = count > 0 ? std::sqrt(squares / count) : 0.0;
+  Summarize(mesh, ratios, pieces, change);
   return change;
 }
 }

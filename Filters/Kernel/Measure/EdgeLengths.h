@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Algebra/DistributedRows.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
 
@@ -19,6 +20,9 @@ struct EdgeLengthChange
   IdSample ZeroLength;
 };
 
+/// Of a surface in pieces (`pieces`, may be nothing) collective: numbers are those of the whole,
+/// ZeroLength has names, and ratios are right at vertices with all of their triangles.
 EdgeLengthChange CompareEdgeLengths(const TriangleMesh& mesh, const Points& reference,
-  const Points& current, const ExecutionContext& context = {});
+  const Points& current, const ExecutionContext& context = {},
+  const DistributedRows* pieces = nullptr);
 }

@@ -5,8 +5,8 @@
 
 namespace cartan
 {
-Anchors SmoothingAnchors(
-  const TriangleMesh& mesh, const Points& points, const std::vector<double>& steps)
+Anchors SmoothingAnchors(const TriangleMesh& mesh, const Points& points,
+  const std::vector<double>& steps, const SurfaceComponents* parts)
 {
   Anchors anchors = Anchors::After(0, mesh.NumberOfVertices());
   // Not the masses of LaplaceOperator, whose bounds and lack of a unit serve powers
@@ -14,9 +14,10 @@ Anchors SmoothingAnchors(
   anchors.Stiffness = MixedVoronoiAreas(mesh, points);
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    if (mesh.IsUsed(v) && steps[mesh.Component(v)] > 0.0)
+    const int component = parts ? parts->OfVertex(v) : mesh.Component(v);
+    if (mesh.IsUsed(v) && steps[component] > 0.0)
     {
-      anchors.Stiffness[v] /= steps[mesh.Component(v)];
+      anchors.Stiffness[v] /= steps[component];
       anchors.IsHard[v] = 0;
     }
   }

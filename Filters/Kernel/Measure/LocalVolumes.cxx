@@ -6,6 +6,7 @@
 #include "Measure/ComponentVolumes.h"
 #include "Measure/ImplicitSmoothing.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -51,14 +52,16 @@ Eigen::Vector3d TurnedDifferences(const TriangleMesh& mesh, const Points& corner
 }
 
 LocalVolumes::LocalVolumes(std::shared_ptr<const TriangleMesh> sharedMesh, const Points& reference,
-  const ExecutionContext& context)
+  const ExecutionContext& context, std::shared_ptr<const DistributedRows> pieces)
   : Mesh(std::move(sharedMesh))
+  , Pieces(std::move(pieces))
+  , Parts(*this->Mesh, this->Pieces.get())
   , Positions(reference)
   , CornerWeight(CornerWeights(*this->Mesh, reference, LaplacianWeights::Cotangent, context))
   , Centers(reference)
 {
   const TriangleMesh& mesh = *this->Mesh;
-  const std::vector<ComponentVolume> components = MeasureComponents(mesh, reference);
+  const std::vector<ComponentVolume> components = MeasureComponents(mesh, reference, this->Parts);
   std::vector<double> steps;
   for (const ComponentVolume& component : components)
   {
@@ -67,23 +70,75 @@ LocalVolumes::LocalVolumes(std::shared_ptr<const TriangleMesh> sharedMesh, const
     this->EnclosesVolume.push_back(enclosesVolume);
     steps.push_back(length * length);
   }
-  this->System.Factorize(
-    Laplacian(mesh, EdgeWeights(mesh, reference, LaplacianWeights::Cotangent, context)),
-    SmoothingAnchors(mesh, reference, steps), context);
+  this->Factorize(reference, steps, context);
   Field centers = reference;
-  this->System.Interpolate(centers);
+  this->Solve(centers, Field(), context);
   this->Centers = centers;
   this->Reference = this->Sum(reference, this->Centers);
   context.Report(1.0);
+}
+
+void LocalVolumes::Factorize(
+  const Points& reference, const std::vector<double>& steps, const ExecutionContext& context)
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  const Eigen::VectorXd weights =
+    EdgeWeights(mesh, reference, LaplacianWeights::Cotangent, context);
+  const Anchors anchors = SmoothingAnchors(mesh, reference, steps, &this->Parts);
+  if (!this->Pieces)
+  {
+    this->System.Factorize(Laplacian(mesh, weights), anchors, context);
+    return;
+  }
+  for (int v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    if (!anchors.IsHard[v])
+    {
+      this->Unknowns.push_back(v);
+    }
+  }
+  if (std::none_of(steps.begin(), steps.end(), [](double step) { return step > 0.0; }))
+  {
+    return; // so it is on all ranks
+  }
+  this->Stiffness = anchors.Stiffness(this->Unknowns);
+  SparseMatrix lower = Laplacian(mesh, weights, this->Unknowns).triangularView<Eigen::Lower>();
+  lower.diagonal() += this->Stiffness;
+  this->OnPieces = std::make_unique<PieceSystem>(this->Pieces, this->Unknowns, lower);
+}
+
+/// `centers` has the places that anchors pull to, and gets the solution.
+void LocalVolumes::Solve(
+  Field& centers, const Field& rightHandSide, const ExecutionContext& context) const
+{
+  if (!this->Pieces)
+  {
+    this->System.Solve(rightHandSide, centers, context);
+    return;
+  }
+  if (!this->OnPieces)
+  {
+    return;
+  }
+  Eigen::MatrixXd complete = this->Stiffness.asDiagonal() * centers(this->Unknowns, Eigen::all);
+  if (rightHandSide.size())
+  {
+    complete += rightHandSide(this->Unknowns, Eigen::all);
+  }
+  centers(this->Unknowns, Eigen::all) = this->OnPieces->Solve(complete, context);
 }
 
 Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionContext& context) const
 {
   const TriangleMesh& mesh = *this->Mesh;
   Field centers = current;
-  if (!this->System.GetFree().empty())
+  if (this->OnPieces || !this->System.GetFree().empty())
   {
-    const Matrices rotations = FitRotations(mesh, this->Positions, current, context);
+    Matrices rotations = FitRotations(mesh, this->Positions, current, context);
+    if (this->Pieces)
+    {
+      this->Pieces->UpdateGhosts(rotations);
+    }
     Field rightHandSide(current.rows(), 3);
     context.For(mesh.NumberOfVertices(),
       [&](int begin, int end)
@@ -97,7 +152,7 @@ Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionCont
             TurnedDifferences(mesh, this->CornerWeight, this->Centers, rotations, v).transpose();
         }
       });
-    this->System.Solve(rightHandSide, centers, context.Part(0.5, 0.9));
+    this->Solve(centers, rightHandSide, context.Part(0.5, 0.9));
   }
   context.Report(1.0);
   return this->Sum(current, centers);
@@ -106,9 +161,9 @@ Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionCont
 Eigen::VectorXd LocalVolumes::Sum(const Points& points, const Points& centers) const
 {
   const TriangleMesh& mesh = *this->Mesh;
-  std::vector<double> rest(mesh.NumberOfComponents(), 0.0);
-  const std::vector<ComponentVolume> inner = MeasureComponents(mesh, centers);
-  const std::vector<ComponentVolume> outer = MeasureComponents(mesh, points);
+  std::vector<double> rest(static_cast<std::size_t>(this->Parts.GetCount()), 0.0);
+  const std::vector<ComponentVolume> inner = MeasureComponents(mesh, centers, this->Parts);
+  const std::vector<ComponentVolume> outer = MeasureComponents(mesh, points, this->Parts);
   for (std::size_t component = 0; component < rest.size(); ++component)
   {
     if (outer[component].Area > 0.0)
@@ -132,8 +187,8 @@ Eigen::VectorXd LocalVolumes::Sum(const Points& points, const Points& centers) c
     const Eigen::Vector3d bottom = AreaVector(c[0], c[1], c[2]);
     // Four times the area vector half-way.
     const Eigen::Vector3d middle = AreaVector(p[0] + c[0], p[1] + c[1], p[2] + c[2]);
-    const double volume = (top + middle + bottom).dot(offset) / 6.0 +
-      rest[mesh.Component(mesh.GetTriangles()(t, 0))] * top.norm();
+    const double volume =
+      (top + middle + bottom).dot(offset) / 6.0 + rest[this->Parts.OfTriangle(t)] * top.norm();
     for (int corner = 0; corner < 3; ++corner)
     {
       volumes[mesh.GetTriangles()(t, corner)] += volume / 3.0;
@@ -141,7 +196,7 @@ Eigen::VectorXd LocalVolumes::Sum(const Points& points, const Points& centers) c
   }
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    if (mesh.IsUsed(v) && !this->EnclosesVolume[mesh.Component(v)])
+    if (mesh.IsUsed(v) && !this->EnclosesVolume[this->Parts.OfVertex(v)])
     {
       volumes[v] = Undefined;
     }

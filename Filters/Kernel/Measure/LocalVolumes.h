@@ -4,6 +4,8 @@
 #include "Algebra/AnchoredSystem.h"
 #include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
+#include "Differential/PieceSystem.h"
+#include "Measure/SurfaceComponents.h"
 #include "Mesh/TriangleMesh.h"
 
 #include <memory>
@@ -45,9 +47,11 @@ namespace cartan
 class LocalVolumes
 {
 public:
-  /// Factorizes M / tau + L once for all current surfaces.
+  /// Factorizes M / tau + L once for all current surfaces. Of a surface in pieces (`pieces`, may
+  /// be nothing) all functions but GetReference() and GetBytes() are collective, the system is
+  /// solved by conjugate gradients, and rows are right at vertices with all of their triangles.
   LocalVolumes(std::shared_ptr<const TriangleMesh> mesh, const Points& reference,
-    const ExecutionContext& context = {});
+    const ExecutionContext& context = {}, std::shared_ptr<const DistributedRows> pieces = nullptr);
 
   /// The local volumes of the reference in cubed length units; 0 at unused
   /// vertices, NaN in components that enclose nothing (open ones, and those
@@ -60,19 +64,28 @@ public:
   /// Without the mesh, which others hold too.
   std::size_t GetBytes() const
   {
-    return this->System.GetBytes() +
+    return this->System.GetBytes() + this->Parts.GetBytes() +
+      (this->OnPieces ? this->OnPieces->GetBytes() : 0) +
       TotalBytes(
         this->Positions, this->EnclosesVolume, this->CornerWeight, this->Centers, this->Reference);
   }
 
 private:
+  void Factorize(
+    const Points& reference, const std::vector<double>& steps, const ExecutionContext& context);
+  void Solve(Field& centers, const Field& rightHandSide, const ExecutionContext& context) const;
   Eigen::VectorXd Sum(const Points& points, const Points& centers) const;
 
   std::shared_ptr<const TriangleMesh> Mesh;
+  std::shared_ptr<const DistributedRows> Pieces;
+  SurfaceComponents Parts;
   Points Positions;
-  std::vector<char> EnclosesVolume; // #components
-  Points CornerWeight;              // #T x 3
-  AnchoredSystem System;            // M / tau + L
+  std::vector<char> EnclosesVolume;      // #components
+  Points CornerWeight;                   // #T x 3
+  AnchoredSystem System;                 // M / tau + L
+  std::unique_ptr<PieceSystem> OnPieces; // the same of pieces
+  std::vector<int> Unknowns;             // of pieces
+  Eigen::VectorXd Stiffness;             // M / tau of these
   Points Centers;
   Eigen::VectorXd Reference;
 };

@@ -159,8 +159,9 @@ ShapeDistances::Patch ShapeDistances::Fit(
 }
 
 ShapeDistances::ShapeDistances(const TriangleMesh& mesh, std::shared_ptr<const Points> reference,
-  const ExecutionContext& context)
+  const ExecutionContext& context, std::shared_ptr<const DistributedRows> pieces)
   : Reference(std::move(reference))
+  , Pieces(std::move(pieces))
   , VertexAreas(BarycentricAreas(mesh, TriangleAreas(mesh, *this->Reference, context)))
   , Patches(mesh.NumberOfVertices())
   , Begin(mesh.NumberOfVertices() + 1, 0)
@@ -201,6 +202,19 @@ ShapeDistances::ShapeDistances(const TriangleMesh& mesh, std::shared_ptr<const P
   }
 }
 
+std::vector<int> ShapeDistances::LooksAt(
+  const TriangleMesh& mesh, const Points& reference, int vertex)
+{
+  Neighborhood neighborhood(mesh, reference);
+  neighborhood.CollectBall(vertex);
+  std::vector<int> ids;
+  for (int k = 0; k < neighborhood.Size(); ++k)
+  {
+    ids.push_back(neighborhood.Vertex(k));
+  }
+  return ids;
+}
+
 /// The coefficients of the same least-squares fit for other positions.
 Eigen::Matrix<double, 3, 5> ShapeDistances::FitPoints(
   const Patch& patch, int v, const Points& points) const
@@ -235,7 +249,19 @@ ShapeDistance ShapeDistances::Measure(const Points& current, const ExecutionCont
         }
       }
     });
-  distance.Total = distance.Density.dot(this->VertexAreas);
+  if (!this->Pieces)
+  {
+    distance.Total = distance.Density.dot(this->VertexAreas);
+    return distance;
+  }
+  this->Pieces->UpdateGhosts(distance.Density);
+  Eigen::VectorXd total = Eigen::VectorXd::Zero(1);
+  for (int v = 0; v < static_cast<int>(distance.Density.size()); ++v)
+  {
+    total[0] += this->Pieces->IsOwned(v) ? distance.Density[v] * this->VertexAreas[v] : 0.0;
+  }
+  this->Pieces->Sum(total);
+  distance.Total = total[0];
   return distance;
 }
 

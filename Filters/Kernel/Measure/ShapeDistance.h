@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Algebra/DistributedRows.h"
 #include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
@@ -49,8 +50,14 @@ class ShapeDistances
 public:
   /// What holds for all current surfaces: which points are fitted around each vertex, over which
   /// coordinates, and the reference's own fit. O(#V), about 450 bytes per vertex.
+  ///
+  /// Of a surface in pieces (`pieces`, may be nothing), which must be so wide that owned vertices
+  /// see all around the vertices that they look at, Measure() is collective.
   ShapeDistances(const TriangleMesh& mesh, std::shared_ptr<const Points> reference,
-    const ExecutionContext& context = {});
+    const ExecutionContext& context = {}, std::shared_ptr<const DistributedRows> pieces = nullptr);
+
+  /// The vertices that the fit around one looks at.
+  static std::vector<int> LooksAt(const TriangleMesh& mesh, const Points& reference, int vertex);
 
   /// Of `current` (#V x 3).
   ShapeDistance Measure(const Points& current, const ExecutionContext& context = {}) const;
@@ -76,6 +83,7 @@ private:
   Eigen::Matrix<double, 3, 5> FitPoints(const Patch& patch, int v, const Points& points) const;
 
   std::shared_ptr<const Points> Reference;
+  std::shared_ptr<const DistributedRows> Pieces;
   Eigen::VectorXd VertexAreas;
   std::vector<Patch> Patches;
   std::vector<int> Begin; // #V + 1: where the points around each vertex begin in Ids

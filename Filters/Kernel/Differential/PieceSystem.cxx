@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Deformation/PieceSystem.h"
+#include "Differential/PieceSystem.h"
 
 #include "Base/DisjointSets.h"
 
