@@ -221,7 +221,8 @@ def sketched(surface, start, end, target=None, **settings):
 
 
 def curves():
-    """A camel's back along a drawn line with two humps, and ridges along its side."""
+    """A camel's outline from the side, whose back is drawn anew with two humps, and ridges along
+    its side."""
     rest = cartan_testing.read_off("camel")
     back = back_of(points_of(rest), 0.1, -0.38)
     drawn = back.copy()
@@ -234,8 +235,9 @@ def curves():
     side = (0.16, 0.12, 0.08), (0.16, 0.12, -0.33)
     panels = [
         Panel("a scan", f"{rest.GetNumberOfPoints():,} points", plain(rest)),
-        Panel("its back redrawn", "", plain(sketched(
-            rest, back[0], back[-1], polyline(drawn), Reach=0.3))),
+        Panel("its outline redrawn", "", plain(sketched(
+            rest, back[0], back[-1], polyline(drawn), Reach=0.3,
+            Source=vtkCurveDeformation.SILHOUETTE, ViewDirection=(-1, 0, 0)))),
         Panel("a ridge along a path", "", plain(sketched(
             rest, *side, RidgeHeight=0.025, RidgeWidth=0.05))),
         Panel("a sharp ravine", "", plain(sketched(

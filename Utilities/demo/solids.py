@@ -42,7 +42,8 @@ def starfish():
     radius = numpy.hypot(flat[:, 0], flat[:, 1])
     angle = numpy.arctan2(flat[:, 1], flat[:, 0])
     reach = 0.38 + 0.62 * (0.5 + 0.5 * numpy.cos(ARMS * angle)) ** 1.6
-    plane = flat[:, :2] * (radius ** 0.1 * reach)[:, None]
+    # Round in the middle, where prisms between arms would be needles.
+    plane = flat[:, :2] * (0.6 + numpy.sqrt(radius) * (reach - 0.6))[:, None]
     arm = numpy.cos(ARMS * angle)
     height = 0.025 + 0.16 * numpy.sqrt(numpy.clip(1 - radius ** 2, 0, 1)) * (
         1 - 0.45 * radius * (1 - 0.5 * arm))
