@@ -2,6 +2,7 @@
 #include "Deformation/SimilarityDeformer.h"
 
 #include "Algebra/Rotation.h"
+#include "Deformation/JoinedVertices.h"
 #include "Differential/Laplacian.h"
 #include "Differential/RotationFit.h"
 
@@ -322,6 +323,8 @@ void SimilarityDeformer::DeformRelative(const HandleTargets& targets, bool wantT
         this->Transforms, targets, result, context.Part(begin, begin + 0.4 / this->Refits));
     }
   }
+  FollowJoined(this->Problem.JoinedWith, this->Scales);
+  MeansForRiders(this->Problem.Riders, this->Scales);
   result.FrameScale.setOnes(this->Problem.Mesh->NumberOfVertices());
   if (wantTransforms)
   {

@@ -95,7 +95,8 @@ public:
   /// together from edges again; not with Affine. Default: 0.
   void SetRefits(int refits) { this->Refits = refits; }
 
-  /// s_i of the last motion, 1 where nothing moves, whether it was used or not: #V.
+  /// s_i of the last motion, 1 where nothing moves, whether it was used or not: #V. Riders and
+  /// joined vertices have those of what they go with.
   const Eigen::VectorXd& GetScaleFactors() const { return this->Scales; }
 
   int GetNumberOfFactorizations() const override;
