@@ -133,6 +133,21 @@ TEST(HighPassQuantization, MovesWithTheUnitAndTheOrigin)
     1e-9);
 }
 
+// The extremes of a symmetric surface are opposite, so that zero is on the bound of two cells.
+TEST(HighPassQuantization, RoundingChoosesNoCell)
+{
+  const Shape shape = shapes::Icosphere(3);
+  const auto mesh = std::make_shared<TriangleMesh>(MakeMesh(shape));
+  const HighPassCoder coder(mesh, shape.Positions, 12);
+  const auto code = coder.Encode(shape.Positions, 8);
+  for (const double unit : { 1e-3, 0.7, 1e3 })
+  {
+    const auto there = coder.Encode(unit * shape.Positions, 8);
+    EXPECT_TRUE(there.Deltas == code.Deltas) << unit;
+    EXPECT_TRUE(there.AnchorPositions == code.AnchorPositions) << unit;
+  }
+}
+
 TEST(VisualError, IsDistanceAndRoughnessWithASign)
 {
   const Shape sphere = shapes::Icosphere(3);

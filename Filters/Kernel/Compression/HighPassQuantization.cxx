@@ -30,11 +30,16 @@ Eigen::RowVector3d GeometricLaplacian(const TriangleMesh& mesh, const Points& po
   return weights > 0.0 ? Eigen::RowVector3d(-sum / weights) : sum;
 }
 
+/// A value less than this part of a cell below its upper bound counts as on it. Zero lies on a
+/// bound where the extreme values are opposite, as on symmetric surfaces, and rounding would
+/// choose the cell for each vertex. Far above rounding, far below what a cell rounds anyway.
+constexpr double OnBound = 1e-6;
+
 /// The number of the cell of [low, low + range] that has `value`, of 2^bits cells.
 std::int32_t CellOf(double value, double low, double range, int bits)
 {
   const double cells = std::ldexp(1.0, bits);
-  const double cell = range > 0.0 ? std::floor((value - low) / range * cells) : 0.0;
+  const double cell = range > 0.0 ? std::floor((value - low) / range * cells + OnBound) : 0.0;
   return static_cast<std::int32_t>(std::clamp(cell, 0.0, cells - 1.0));
 }
 
