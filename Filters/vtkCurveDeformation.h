@@ -77,13 +77,14 @@ public:
   ///@{
   /**
    * The source curve. SELECTED_POINTS: PointIds, in any order, that form one line of
-   * edges; it starts at the end that is nearer to the target's start. The others go from
-   * each of PointIds to the next. GEODESIC: on the shortest way across triangles; of each
-   * edge that it crosses the nearer end moves, and stays as far beside the curve as it was.
-   * The others on the shortest way along edges: SHORTEST_PATH along all edges, which
-   * zigzags; FEATURE_EDGES along those whose triangles are more than FeatureAngle apart, and
-   * borders; SILHOUETTE along those that a viewer along ViewDirection sees as outline, and
-   * borders. Points beside such edges stand for the nearest one on them. Default: GEODESIC.
+   * edges; it starts at the end that is nearer to the target's start, without a target at the
+   * one that is named first. The others go from each of PointIds to the next. GEODESIC: on the
+   * shortest way across triangles; of each edge that it crosses the nearer end moves, and stays
+   * as far beside the curve as it was. The others on the shortest way along edges: SHORTEST_PATH
+   * along all edges, which zigzags; FEATURE_EDGES along those whose triangles are more than
+   * FeatureAngle apart, and borders; SILHOUETTE along those that a viewer along ViewDirection
+   * sees as outline, and borders. Points beside such edges stand for the nearest one on them.
+   * Default: GEODESIC.
    */
   vtkSetClampMacro(Source, int, SELECTED_POINTS, GEODESIC);
   vtkGetMacro(Source, int);
@@ -242,7 +243,8 @@ public:
   ///@{
   /**
    * By which angle they turn about the tangents of the curve, in degrees: the surface leans
-   * to one side, as for suggestive contours. Default: 0.
+   * to one side, as for suggestive contours; to the other where the curve runs the other way.
+   * Default: 0.
    */
   vtkSetClampMacro(RidgeTurn, double, -180.0, 180.0);
   vtkGetMacro(RidgeTurn, double);

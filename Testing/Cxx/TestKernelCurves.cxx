@@ -93,7 +93,9 @@ TEST(EdgePaths, ChainsAreSortedAndOthersRefused)
 {
   const shapes::Shape plane = shapes::Plane(4);
   const TriangleMesh mesh(plane.NumberOfVertices(), plane.Faces);
-  EXPECT_EQ(cartan::ChainVertices(mesh, { 3, 1, 2, 0, 2 }), (std::vector<int>{ 0, 1, 2, 3 }));
+  // From the end that is named first.
+  EXPECT_EQ(cartan::ChainVertices(mesh, { 3, 1, 2, 0, 2 }), (std::vector<int>{ 3, 2, 1, 0 }));
+  EXPECT_EQ(cartan::ChainVertices(mesh, { 2, 0, 1, 3 }), (std::vector<int>{ 0, 1, 2, 3 }));
   for (const std::vector<int>& wrong :
     { std::vector<int>{ 0 }, { 0, 1, 3, 4 }, { 0, 1, 2, 6, 7, 5 } })
   {
@@ -242,6 +244,16 @@ TEST(EdgePaths, RingsRunAroundABar)
   ASSERT_EQ(around.size(), 16u);
   const std::vector<int> ring = cartan::ChainVertices(mesh, around, true);
   EXPECT_NEAR(LengthOfRing(RowsAt(bar.Positions, ring)), 4.0, 1e-12);
+  EXPECT_EQ(ring.front(), around.front());
+  // Named in another order it starts there and runs towards the neighbor that is named first.
+  std::vector<int> others = { ring[5], ring[4] };
+  others.insert(others.end(), ring.begin(), ring.end());
+  std::vector<int> backward;
+  for (int i = 0; i < 16; ++i)
+  {
+    backward.push_back(ring[(21 - i) % 16]);
+  }
+  EXPECT_EQ(cartan::ChainVertices(mesh, others, true), backward);
   // The same through four of its points, and in no order that crosses itself.
   const std::vector<int> four = { ring[0], ring[4], ring[8], ring[12] };
   const std::vector<int> through = cartan::PathThrough(mesh, bar.Positions, four, {}, true);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Advice.h"
+#include "Backwards.h"
 #include "CurveLines.h"
 
 #include "vtkCurveDeformation.h"
@@ -154,6 +155,56 @@ TEST(CurveDeformation, TargetsOfClosedCurvesAreRings)
     Advice("Connect one line or ring, such as a part of it from Extract Cells.") });
   belt.SetRing(belt.Rest());
   filter.Works();
+}
+
+/// Which way a ridge leans follows from the order in which points are named, not from their ids.
+TEST(CurveDeformation, RidgesTurnByTheOrderInWhichPointsAreNamed)
+{
+  const shapes::Shape ball = shapes::UvSphere(24, 11);
+  const auto count = static_cast<vtkIdType>(ball.NumberOfVertices());
+  for (const bool isClosed : { false, true })
+  {
+    // Along the equator.
+    std::vector<vtkIdType> ids;
+    for (vtkIdType v = 0; v < count; ++v)
+    {
+      const Eigen::RowVector3d p = ball.Positions.row(v);
+      if (std::abs(p.z()) < 1e-9 && (isClosed || p.y() > 0.1))
+      {
+        ids.push_back(v);
+      }
+    }
+    std::sort(ids.begin(), ids.end(),
+      [&](vtkIdType a, vtkIdType b)
+      {
+        const auto angle = [&](vtkIdType v)
+        { return std::atan2(ball.Positions(v, 1), ball.Positions(v, 0)); };
+        return angle(a) < angle(b);
+      });
+    const auto leaning = [&](const shapes::Shape& shape, const std::vector<vtkIdType>& named)
+    {
+      Advised<vtkCurveDeformation> filter;
+      filter->SetInputData(vtktest::MakePolyData(shape));
+      filter->SetSourceToSelectedPoints();
+      filter->SetClosedCurve(isClosed);
+      SetPointIds(filter.Get(), named);
+      filter->SetRidgeWidth(0.5);
+      filter->SetRidgeTurn(40.0);
+      return vtktest::PointsOf(filter.Works());
+    };
+    ASSERT_GT(ids.size(), 5u);
+    const cartan::Points expected = leaning(ball, ids);
+    std::vector<vtkIdType> others;
+    for (const vtkIdType id : ids)
+    {
+      others.push_back(count - 1 - id);
+    }
+    const cartan::Points there = leaning(shapes::Backwards(ball), others);
+    EXPECT_LT((there.colwise().reverse() - expected).cwiseAbs().maxCoeff(), 1e-9);
+    // Named the other way round, it leans to the other side: mirrored.
+    const cartan::Points opposite = leaning(ball, { ids.rbegin(), ids.rend() });
+    EXPECT_GT((opposite - expected).cwiseAbs().maxCoeff(), 0.01);
+  }
 }
 
 TEST(CurveDeformation, RidgesScaleAndTurnDeltas)

@@ -328,14 +328,12 @@ std::optional<Finding> CheckOrder(const Case& original, const Outcome& first, Ra
 }
 
 /// Results that number points and cells anew do not survive another order, and some
-/// solvers hold the first point. A ridge turns points by the stretch of the curve from which a
-/// front reaches them, which may come by several ways of equal length.
+/// solvers hold the first point.
 bool KeepsOrder(const Case& of)
 {
-  const bool turnsByWays = of.Filter == "CurveDeformation" && of.Get("RidgeTurn", 0.0) != 0.0;
   const bool holdsFirst = of.Filter == "SurfaceMorph" && of.Get("Method", 0.0) <= 0.0 &&
     of.Get("FrameSolver", 0.0) >= 1.0;
-  return HasPlace(of) && !of.NumbersAnew() && !holdsFirst && !turnsByWays;
+  return HasPlace(of) && !of.NumbersAnew() && !holdsFirst;
 }
 
 std::optional<Finding> CheckHistory(const Case& original, const Outcome& first, Random& random)

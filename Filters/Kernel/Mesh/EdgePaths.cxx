@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace cartan
@@ -198,28 +199,58 @@ std::vector<int> RingThrough(
   return ring;
 }
 
-std::vector<int> ChainVertices(const TriangleMesh& mesh, std::vector<int> vertices, bool isClosed)
+namespace
 {
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const auto neighbors = [&](int v)
+/// Vertices in the order in which they are named, each once.
+class ChainedVertices
+{
+public:
+  explicit ChainedVertices(const std::vector<int>& vertices)
+  {
+    for (const int v : vertices)
+    {
+      if (this->Places.emplace(v, this->Places.size()).second)
+      {
+        this->Vertices.push_back(v);
+      }
+    }
+  }
+
+  const std::vector<int>& GetVertices() const { return this->Vertices; }
+
+  /// Those of them that an edge joins with v, the one that is named first before others: their
+  /// ids decide nothing.
+  std::vector<int> NeighborsOf(const TriangleMesh& mesh, int v) const
   {
     std::vector<int> found;
     for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
     {
-      if (std::binary_search(vertices.begin(), vertices.end(), mesh.Neighbor(d)))
+      if (this->Places.count(mesh.Neighbor(d)) > 0)
       {
         found.push_back(mesh.Neighbor(d));
       }
     }
+    std::sort(found.begin(), found.end(),
+      [this](int a, int b) { return this->Places.at(a) < this->Places.at(b); });
     return found;
-  };
+  }
+
+private:
+  std::vector<int> Vertices;
+  std::unordered_map<int, std::size_t> Places;
+};
+}
+
+std::vector<int> ChainVertices(
+  const TriangleMesh& mesh, const std::vector<int>& vertices, bool isClosed)
+{
+  const ChainedVertices named(vertices);
   IdSample branches;
   int first = -1;
   bool hasEnds = false;
-  for (const int v : vertices)
+  for (const int v : named.GetVertices())
   {
-    const std::size_t count = neighbors(v).size();
+    const std::size_t count = named.NeighborsOf(mesh, v).size();
     hasEnds = hasEnds || count < 2;
     if (count > 2)
     {
@@ -236,17 +267,15 @@ std::vector<int> ChainVertices(const TriangleMesh& mesh, std::vector<int> vertic
   for (int v = branches.IsEmpty() ? first : -1; v >= 0;)
   {
     chain.push_back(v);
-    int next = -1;
-    for (const int w : neighbors(v))
-    {
-      next = w != before ? w : next;
-    }
+    const std::vector<int> neighbors = named.NeighborsOf(mesh, v);
+    const auto next =
+      std::find_if(neighbors.begin(), neighbors.end(), [before](int w) { return w != before; });
     before = v;
-    v = isClosed && next == first ? -1 : next;
+    v = next == neighbors.end() || (isClosed && *next == first) ? -1 : *next;
   }
-  if (chain.size() < 2 || chain.size() < vertices.size())
+  if (chain.size() < 2 || chain.size() < named.GetVertices().size())
   {
-    RefuseChain(vertices.size(), branches, isClosed);
+    RefuseChain(named.GetVertices().size(), branches, isClosed);
   }
   return chain;
 }

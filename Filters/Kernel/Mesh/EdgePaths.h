@@ -46,10 +46,10 @@ std::vector<int> PathThrough(const TriangleMesh& mesh, const Points& points,
 std::vector<int> RingThrough(
   const TriangleMesh& mesh, const Points& points, int pick, const EdgeMask& allowed);
 
-/// Puts vertices that form one line of edges in the order of that line, from the end of
-/// the smaller id on; with `isClosed` those of a ring, from the smallest id on. Throws
-/// Error(BadInput) where they do not: fewer than two, several lines, branches, or a ring
-/// instead of a line.
+/// Puts vertices that form one line of edges in the order of that line, from the end that
+/// is named first on; with `isClosed` those of a ring, from the one that is named first on
+/// towards that of its neighbors which is. Throws Error(BadInput) where they do not: fewer
+/// than two, several lines, branches, or a ring instead of a line.
 std::vector<int> ChainVertices(
-  const TriangleMesh& mesh, std::vector<int> vertices, bool isClosed = false);
+  const TriangleMesh& mesh, const std::vector<int>& vertices, bool isClosed = false);
 }
