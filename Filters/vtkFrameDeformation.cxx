@@ -59,7 +59,7 @@ double DiagonalOf(const cartan::HandleProblem& problem, cartan::FilterRun& run)
 /// The part of the volume under each vertex; NaN where none is enclosed.
 Eigen::VectorXd LocalVolumesOf(const cartan::HandleProblem& problem,
   const cartan::VolumeModel& model, const cartan::LocalVolumes& volumes,
-  const cartan::Points& positions, const cartan::ExecutionContext& context)
+  const cartan::Points& positions, cartan::FilterRun& run)
 {
   // A part that has gone with its slivers encloses nothing.
   std::vector<char> enclosesVolume(problem.GetWhole()->NumberOfComponents(), 0);
@@ -67,7 +67,14 @@ Eigen::VectorXd LocalVolumesOf(const cartan::HandleProblem& problem,
   {
     enclosesVolume[model.Names[c]] = model.EnclosesVolume[c];
   }
-  Eigen::VectorXd measured = volumes.Measure(positions, context);
+  cartan::MeasuredVolumes volumesNow = volumes.Measure(positions, run.Context().Part(0.97, 0.98));
+  if (!(volumesNow.Rounding <= cartan::LargestVolumeRounding))
+  {
+    run.Warn(
+      "The coordinates have no digits for LocalVolume: the surface is stretched too much for "
+      "its volume. Use smaller motions, or switch GenerateVolumeArrays off.");
+  }
+  Eigen::VectorXd& measured = volumesNow.Values;
   for (Eigen::Index v = 0; v < positions.rows(); ++v)
   {
     const int component = problem.GetWhole()->Component(static_cast<int>(v));
@@ -224,8 +231,7 @@ void vtkFrameDeformation::AddVolumeArrays(const cartan::FrameDeformer& deformer,
           return std::make_unique<cartan::LocalVolumes>(
             problem.GetWhole(), *problem.Rest, run.Context().Part(0.95, 0.97));
         });
-      volume =
-        LocalVolumesOf(problem, model, *volumes, result.Positions, run.Context().Part(0.97, 0.98));
+      volume = LocalVolumesOf(problem, model, *volumes, result.Positions, run);
     }
     cartan::AddPointArray(output, "LocalDepth", depth);
     cartan::AddPointArray(output, "LocalVolume", volume);

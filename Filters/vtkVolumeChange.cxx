@@ -123,8 +123,15 @@ void vtkVolumeChange::Compare(const cartan::SurfacePair& pair, cartan::FilterRun
         return std::make_unique<cartan::LocalVolumes>(
           pair.Mesh, *pair.Reference, run.Context().Part(0.3, 0.8), pair.Pieces);
       });
-    const Eigen::VectorXd localVolume =
+    const cartan::MeasuredVolumes measured =
       volumes->Measure(*pair.Current, run.Context().Part(0.8, 1.0));
+    const Eigen::VectorXd& localVolume = measured.Values;
+    if (!(measured.Rounding <= cartan::LargestVolumeRounding))
+    {
+      run.Warn("The coordinates have no digits for LocalVolume: the surface is stretched too much "
+               "for its volume. Compare surfaces that are stretched less, or switch "
+               "ComputeLocalVolume off.");
+    }
     cartan::AddPointArray(output, "LocalVolume", localVolume);
     cartan::AddPointArray(
       output, "LocalVolumeRatio", cartan::Ratios(volumes->GetReference(), localVolume));

@@ -141,7 +141,7 @@ TEST(LocalVolumes, SumToTheEnclosedVolume)
     const LocalVolumes volumes(SharedMesh(shape), shape.Positions);
     EXPECT_NEAR(volumes.GetReference().sum(), VolumeOf(shape), 1e-11);
     const shapes::Shape other = shapes::Noisy(shape, 0.1, 5);
-    EXPECT_NEAR(volumes.Measure(other.Positions).sum(), VolumeOf(other), 1e-11);
+    EXPECT_NEAR(volumes.Measure(other.Positions).Values.sum(), VolumeOf(other), 1e-11);
   }
 }
 
@@ -150,7 +150,8 @@ TEST(LocalVolumes, OfTheReferenceAgreeWithTheMeasuredOnes)
   const shapes::Shape shape = shapes::Noisy(shapes::Torus(32, 16), 0.03);
   const LocalVolumes volumes(SharedMesh(shape), shape.Positions);
   EXPECT_LT(
-    (volumes.Measure(shape.Positions) - volumes.GetReference()).cwiseAbs().maxCoeff(), 1e-12);
+    (volumes.Measure(shape.Positions).Values - volumes.GetReference()).cwiseAbs().maxCoeff(),
+    1e-12);
 }
 
 TEST(LocalVolumes, InvariantToRigidMotions)
@@ -158,9 +159,43 @@ TEST(LocalVolumes, InvariantToRigidMotions)
   const shapes::Shape shape = shapes::Torus(32, 16, 2.0, 0.7, 0.2);
   const LocalVolumes volumes(SharedMesh(shape), shape.Positions);
   const Points moved = shapes::RandomRigidMotion(3, 10.0)(shape.Positions);
-  EXPECT_LT((volumes.Measure(moved) - volumes.GetReference()).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((volumes.Measure(moved).Values - volumes.GetReference()).cwiseAbs().maxCoeff(), 1e-12);
   const LocalVolumes ofMoved(SharedMesh(shape), moved);
   EXPECT_LT((ofMoved.GetReference() - volumes.GetReference()).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+// As a difference of products of long edges, below rounding: the result then depends on the frame.
+TEST(LocalVolumes, KnowTheirRounding)
+{
+  const shapes::Shape shape = shapes::Noisy(shapes::Torus(32, 16, 2.0, 0.7, 0.2), 0.05);
+  const LocalVolumes volumes(SharedMesh(shape), shape.Positions);
+  const auto turn = shapes::RandomRigidMotion(3, 0.0);
+  const auto differenceOf = [&](double stretch)
+  {
+    Points stretched = shape.Positions;
+    stretched.col(0) = stretched.col(0).array().cube() * stretch;
+    const cartan::MeasuredVolumes here = volumes.Measure(stretched);
+    const cartan::MeasuredVolumes there = volumes.Measure(turn(stretched));
+    const double largest = here.Values.cwiseAbs().maxCoeff();
+    return std::pair(here.Rounding, (here.Values - there.Values).cwiseAbs().maxCoeff() / largest);
+  };
+  for (const double stretch : { 1.0, 1e2, 1e3 })
+  {
+    const auto [rounding, difference] = differenceOf(stretch);
+    EXPECT_LT(rounding, cartan::LargestVolumeRounding) << stretch;
+    EXPECT_LT(difference, 1e-4) << stretch;
+  }
+  for (const double stretch : { 1e7, 1e9 })
+  {
+    const auto [rounding, difference] = differenceOf(stretch);
+    EXPECT_GT(rounding, cartan::LargestVolumeRounding) << stretch;
+  }
+  EXPECT_GT(differenceOf(1e9).second, 1e-3);
+  // Alike in all directions, all digits stay, and flattened, nothing is left to be off.
+  Points flat = shape.Positions;
+  flat.col(2).setZero();
+  EXPECT_LT(volumes.Measure(flat).Rounding, 1e-12);
+  EXPECT_LT(volumes.Measure(1e9 * shape.Positions).Rounding, 1e-12);
 }
 
 TEST(LocalVolumes, AreEqualOnASphere)
@@ -179,7 +214,7 @@ TEST(LocalVolumes, FindWhereTheVolumeWasLost)
   const shapes::Shape bar = shapes::Bar(6, 6, 60, { 1.0, 1.0, 10.0 });
   const Points bent = BentBar(bar.Positions, 4.0, 6.0, 1.5, 0.4);
   const LocalVolumes volumes(SharedMesh(bar), bar.Positions);
-  const Eigen::VectorXd now = volumes.Measure(bent);
+  const Eigen::VectorXd now = volumes.Measure(bent).Values;
   double endsBefore = 0.0;
   double endsNow = 0.0;
   double middleBefore = 0.0;

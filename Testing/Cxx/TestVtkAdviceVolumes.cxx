@@ -84,6 +84,37 @@ struct Between : Advised<vtkSurfaceMorph>
 };
 }
 
+TEST(AdviceOnVolumes, StretchedTooMuchThereAreNoDigits)
+{
+  const auto bar = vtktest::MarkedBar();
+  Advised<vtkShapePreservingDeformation> deform;
+  deform->SetInputData(bar);
+  deform->GenerateVolumeArraysOn();
+  vtkNew<vtkHandleMotion> far;
+  far->SetTranslation(1e8, -2e8, 3e8);
+  deform->SetHandleMotion(2, far);
+  const std::vector<std::string> parts = { "no digits for LocalVolume",
+    Advice("Use smaller motions, or switch GenerateVolumeArrays off.") };
+  deform.Warns(parts);
+  deform->GenerateVolumeArraysOff();
+  const auto stretched = deform.Works();
+  deform->GenerateVolumeArraysOn();
+  far->SetTranslation(10.0, -20.0, 30.0);
+  const auto nearer = deform.Works();
+
+  Advised<vtkVolumeChange> change;
+  change->SetInputData(0, stretched);
+  change->SetInputData(1, bar);
+  change->ComputeLocalVolumeOn();
+  change.Warns({ "no digits for LocalVolume",
+    Advice("Compare surfaces that are stretched less, or switch ComputeLocalVolume off.") });
+  change->ComputeLocalVolumeOff();
+  change.Works();
+  change->ComputeLocalVolumeOn();
+  change->SetInputData(0, nearer);
+  change.Works();
+}
+
 TEST(AdviceOnVolumes, AnOpenSurfaceIsClosedByPrepareSurface)
 {
   const auto tube = MakePolyData(shapes::OpenCylinder(12, 12, 0.5, 4.0));

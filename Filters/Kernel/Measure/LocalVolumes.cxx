@@ -5,8 +5,10 @@
 #include "Differential/RotationFit.h"
 #include "Measure/ComponentVolumes.h"
 #include "Measure/ImplicitSmoothing.h"
+#include "Mesh/TriangleShape.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -128,7 +130,7 @@ void LocalVolumes::Solve(
   centers(this->Unknowns, Eigen::all) = this->OnPieces->Solve(complete, context);
 }
 
-Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionContext& context) const
+MeasuredVolumes LocalVolumes::Measure(const Points& current, const ExecutionContext& context) const
 {
   const TriangleMesh& mesh = *this->Mesh;
   Field centers = current;
@@ -155,7 +157,46 @@ Eigen::VectorXd LocalVolumes::Measure(const Points& current, const ExecutionCont
     this->Solve(centers, rightHandSide, context.Part(0.5, 0.9));
   }
   context.Report(1.0);
-  return this->Sum(current, centers);
+  MeasuredVolumes measured;
+  measured.Values = this->Sum(current, centers);
+  measured.Rounding = this->RoundingOf(measured.Values, current, centers);
+  return measured;
+}
+
+/// A coordinate is off by epsilon times the largest, and an area vector by that times the longest
+/// edge of its triangle, which the offset from the centers multiplies.
+double LocalVolumes::RoundingOf(
+  const Eigen::VectorXd& volumes, const Points& points, const Points& centers) const
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  // The largest coordinate, what multiplies its rounding, and the largest volume.
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(3);
+  largest[0] = points.size() > 0 ? points.cwiseAbs().maxCoeff() : 0.0;
+  for (int t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto corners = mesh.GetTriangles().row(t);
+    if (!this->EnclosesVolume[this->Parts.OfVertex(corners[0])])
+    {
+      continue;
+    }
+    const Eigen::Vector3d a = points.row(corners[0]);
+    const Eigen::Vector3d b = points.row(corners[1]);
+    const Eigen::Vector3d c = points.row(corners[2]);
+    const Eigen::RowVector3d offset =
+      (points(corners, Eigen::all) - centers(corners, Eigen::all)).colwise().mean();
+    largest[1] = std::max(largest[1],
+      std::sqrt(LongestEdgeSquared(a, b, c)) * offset.norm() + AreaVector(a, b, c).norm());
+    for (const int v : corners)
+    {
+      largest[2] = std::max({ largest[2], std::abs(volumes[v]), std::abs(this->Reference[v]) });
+    }
+  }
+  if (this->Pieces)
+  {
+    this->Pieces->Max(largest);
+  }
+  const double rounding = std::numeric_limits<double>::epsilon() * largest[0] * largest[1];
+  return rounding > 0.0 ? rounding / largest[2] : 0.0;
 }
 
 Eigen::VectorXd LocalVolumes::Sum(const Points& points, const Points& centers) const

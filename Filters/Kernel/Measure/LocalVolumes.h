@@ -13,6 +13,19 @@
 
 namespace cartan
 {
+/// Local volumes with what the digits of coordinates leave open.
+struct MeasuredVolumes
+{
+  Eigen::VectorXd Values; ///< #V
+  /// By how much one may be off for the rounding of coordinates, in parts of the largest of
+  /// these and of the reference: next to nothing unless a surface is stretched so much that the
+  /// products of long edges cancel. The same on all ranks.
+  double Rounding = 0.0;
+};
+
+/// Volumes that are off by more than this are mostly noise.
+constexpr double LargestVolumeRounding = 1e-5;
+
 /// The part of the enclosed volume that lies under each vertex, in the spirit
 /// of Lipman et al., Volume and Shape Preservation via Moving Frame
 /// Manipulation, 2007, section 4 (volume below a surface element in the
@@ -59,7 +72,7 @@ public:
   const Eigen::VectorXd& GetReference() const { return this->Reference; }
 
   /// The same for the current surface.
-  Eigen::VectorXd Measure(const Points& current, const ExecutionContext& context = {}) const;
+  MeasuredVolumes Measure(const Points& current, const ExecutionContext& context = {}) const;
 
   /// Without the mesh, which others hold too.
   std::size_t GetBytes() const
@@ -75,6 +88,8 @@ private:
     const Points& reference, const std::vector<double>& steps, const ExecutionContext& context);
   void Solve(Field& centers, const Field& rightHandSide, const ExecutionContext& context) const;
   Eigen::VectorXd Sum(const Points& points, const Points& centers) const;
+  double RoundingOf(
+    const Eigen::VectorXd& volumes, const Points& points, const Points& centers) const;
 
   std::shared_ptr<const TriangleMesh> Mesh;
   std::shared_ptr<const DistributedRows> Pieces;
