@@ -393,8 +393,8 @@ void vtkCurveDeformation::RaiseRidge(
   const double width = this->RidgeWidth > 0.0
     ? this->RidgeWidth
     : 5.0 * lengths[lengths.size() - 1] / static_cast<double>(lengths.size() - 1);
-  const Eigen::VectorXd distances =
-    cartan::GeodesicDistance(*surface.Mesh, *surface.Positions, curves.Path, width);
+  const Eigen::VectorXd distances = cartan::DistanceFromCurve(
+    *surface.Mesh, *surface.Positions, { curves.Path, curves.Source }, this->ClosedCurve, width);
   if (this->RidgeScale != 1.0 || this->RidgeTurn != 0.0)
   {
     const cartan::CurveDeltas deltas = { this->RidgeScale, this->RidgeTurn * cartan::Pi / 180.0,

@@ -145,6 +145,31 @@ TEST(GeodesicPath, FollowsGreatCircles)
   }
 }
 
+TEST(GeodesicPath, DistancesFromItAreThoseOnTheSphere)
+{
+  const Shape sphere = shapes::Icosphere(4);
+  const TriangleMesh mesh = MeshOf(sphere);
+  const int a = Nearest(sphere, { 1.0, 0.1, 0.0 });
+  const int b = Nearest(sphere, { -0.5, 0.8, 0.1 });
+  const int c = Nearest(sphere, { -0.5, -0.8, -0.1 });
+  const CurveAcross ring = cartan::GeodesicThrough(mesh, sphere.Positions, { a, b, c }, true);
+  const Eigen::VectorXd distances =
+    cartan::DistanceFromCurve(mesh, sphere.Positions, ring, true, 0.8);
+  const Eigen::Vector3d axis = (sphere.Positions.row(b) - sphere.Positions.row(a))
+                                 .cross(sphere.Positions.row(c) - sphere.Positions.row(a))
+                                 .normalized()
+                                 .transpose();
+  for (int v = 0; v < sphere.NumberOfVertices(); ++v)
+  {
+    const double angle = std::abs(std::asin(sphere.Positions.row(v).dot(axis)));
+    if (angle < 0.6)
+    {
+      EXPECT_NEAR(distances[v], angle, 0.08);
+    }
+    EXPECT_TRUE(std::isfinite(distances[v]) || angle > 0.7);
+  }
+}
+
 TEST(GeodesicPath, TurnsAroundCorners)
 {
   // Without the quadrant x, y > 0 the way leads over the corner in the middle, beyond which

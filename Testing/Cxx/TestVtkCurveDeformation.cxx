@@ -291,6 +291,26 @@ TEST(CurveDeformation, RidgesHaveTheirHeightAndWidth)
   }
 }
 
+TEST(CurveDeformation, RidgesFollowGeodesics)
+{
+  const auto plane = vtktest::MakePolyData(shapes::Plane(40, 4.0));
+  Advised<vtkCurveDeformation> filter;
+  filter->SetInputData(plane);
+  const vtkIdType from = plane->FindPoint(-1.0, 1.6, 0.0);
+  const vtkIdType to = plane->FindPoint(1.2, -1.4, 0.0);
+  SetPointIds(filter.Get(), { from, to });
+  filter->SetRidgeWidth(0.5);
+  filter->SetRidgeHeight(0.3);
+  const auto result = filter.Works();
+  const cartan::Points ends = PlacesOf(plane, { from, to });
+  for (vtkIdType v = 0; v < result->GetNumberOfPoints(); ++v)
+  {
+    const double t =
+      std::min(DistanceToCurve(Eigen::Vector3d(plane->GetPoint(v)), ends) / 0.5, 1.0);
+    EXPECT_NEAR(result->GetPoint(v)[2], 0.3 * std::pow(1.0 - t * t, 2), 1e-9);
+  }
+}
+
 TEST(CurveDeformation, PathsFollowFeaturesAndOutlines)
 {
   const auto bar = vtktest::MakePolyData(shapes::Bar(4, 4, 16, { 1.0, 1.0, 4.0 }));

@@ -297,4 +297,33 @@ CurveAcross GeodesicThrough(
   RequireSimplePath(curve.Vertices, isClosed);
   return curve;
 }
+
+Eigen::VectorXd DistanceFromCurve(const TriangleMesh& mesh, const Points& points,
+  const CurveAcross& curve, bool isClosed, double limit)
+{
+  double beside = 0.0;
+  const Eigen::Index count = curve.Places.rows();
+  for (Eigen::Index i = 0; i < count; ++i)
+  {
+    beside = std::max(beside, (points.row(curve.Vertices[i]) - curve.Places.row(i)).norm());
+  }
+  Eigen::VectorXd distances = GeodesicDistance(mesh, points, curve.Vertices, limit + beside);
+  for (Eigen::Index v = 0; beside > 0.0 && v < distances.size(); ++v)
+  {
+    if (!std::isfinite(distances[v]))
+    {
+      continue;
+    }
+    double straight = std::numeric_limits<double>::infinity();
+    for (Eigen::Index i = 0; i + (isClosed ? 0 : 1) < count; ++i)
+    {
+      const Eigen::RowVector3d edge = curve.Places.row((i + 1) % count) - curve.Places.row(i);
+      const Eigen::RowVector3d way = points.row(v) - curve.Places.row(i);
+      const double t = edge.isZero(0.0) ? 0.0 : way.dot(edge) / edge.squaredNorm();
+      straight = std::min(straight, (way - std::min(std::max(t, 0.0), 1.0) * edge).squaredNorm());
+    }
+    distances[v] = std::max(distances[v] - beside, std::sqrt(straight));
+  }
+  return distances;
+}
 }

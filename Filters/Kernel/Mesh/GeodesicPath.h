@@ -44,4 +44,11 @@ struct CurveAcross
 /// vertices beside it pass one twice.
 CurveAcross GeodesicThrough(
   const TriangleMesh& mesh, const Points& points, const std::vector<int>& picks, bool isClosed);
+
+/// The distance of each vertex from a curve: #V, infinite beyond `limit`. GeodesicDistance
+/// from its vertices where they are on it. Else that may be wrong by as much as they are beside
+/// it, and the distance is the largest that surely is no larger: this less, or the straight
+/// line's, which is right in the plane.
+Eigen::VectorXd DistanceFromCurve(const TriangleMesh& mesh, const Points& points,
+  const CurveAcross& curve, bool isClosed, double limit);
 }
