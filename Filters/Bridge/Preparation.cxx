@@ -64,7 +64,7 @@ void DeformAndCheck(Preparation& prepared, const HandleTargets& targets,
   {
     Preparation& moved = *prepared.Moved;
     moved.Method.Deformer->Deform(
-      targets, fields.Transforms, moved.Result, context.Part(part, 1.0));
+      WithMovedTargets(targets), fields.Transforms, moved.Result, context.Part(part, 1.0));
     RoundingDifference difference =
       CompareResults(prepared.Problem, prepared.Result, moved.Result, fields);
     difference.IsOfSlivers = !HaveSameTriangles(*prepared.Problem.Mesh, *moved.Problem.Mesh);

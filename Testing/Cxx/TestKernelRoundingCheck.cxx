@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HandleShapes.h"
+#include "Kernel/Algebra/Rotation.h"
 #include "Kernel/Deformation/RoundingCheck.h"
 #include "Kernel/Mesh/Geometry.h"
 #include "TestShapes.h"
@@ -37,6 +38,36 @@ TEST(RoundingCheck, MovesAllPointsByLess)
   EXPECT_LE(by.maxCoeff(), 1.001 * cartan::RoundingOfInput * size);
   EXPECT_GT(by.rowwise().maxCoeff().minCoeff(), 0.01 * cartan::RoundingOfInput * size);
   EXPECT_TRUE(*cartan::WithMovedPoints(problem).Rest == *moved.Rest);
+}
+
+TEST(RoundingCheck, TurnsMotionsByLessAndLeavesIdentities)
+{
+  cartan::HandleTargets targets;
+  targets.Motions.resize(2);
+  targets.Motions[1].RotationVector = { 0.4, -7.0, 2.0 };
+  targets.Motions[1].Linear = 3.0 * cartan::RotationFromVector(targets.Motions[1].RotationVector);
+  targets.Transforms = cartan::Identities(2);
+  cartan::MatrixAt(targets.Transforms, 1) = targets.Motions[1].Linear;
+  targets.RotationVectors = cartan::Points::Zero(2, 3);
+  targets.RotationVectors.row(1) << 1.0, 2.0, 3.0;
+  const cartan::HandleTargets moved = cartan::WithMovedTargets(targets);
+  EXPECT_TRUE(moved.Motions[0].Linear.isIdentity(0.0));
+  EXPECT_TRUE(moved.Motions[0].RotationVector.isZero(0.0));
+  EXPECT_TRUE(cartan::MatrixAt(moved.Transforms, 0).isIdentity(0.0));
+  EXPECT_TRUE(moved.RotationVectors.row(0).isZero(0.0));
+  const auto expectMoved = [](const auto& from, const auto& to)
+  {
+    const double by = (to - from).norm() / from.norm();
+    EXPECT_GT(by, 0.01 * cartan::RoundingOfTurns);
+    EXPECT_LT(by, 2.0 * cartan::RoundingOfTurns);
+  };
+  expectMoved(targets.Motions[1].Linear, moved.Motions[1].Linear);
+  expectMoved(targets.Motions[1].RotationVector, moved.Motions[1].RotationVector);
+  expectMoved(targets.Transforms.row(1), moved.Transforms.row(1));
+  expectMoved(targets.RotationVectors.row(1), moved.RotationVectors.row(1));
+  // A rotation stays one, to the rounding of its square.
+  const Eigen::Matrix3d turn = moved.Motions[1].Linear / 3.0;
+  EXPECT_LT((turn.transpose() * turn - Eigen::Matrix3d::Identity()).norm(), 1e-14);
 }
 
 TEST(RoundingCheck, FindsWhatDiffers)

@@ -9,6 +9,7 @@
 #include "vtkPrepareSurface.h"
 #include "vtkRotationInvariantDeformation.h"
 #include "vtkShapePreservingDeformation.h"
+#include "vtkSimilarityDeformation.h"
 
 /// Where rounding decides about a deformation, it says so, and what helps.
 namespace
@@ -103,6 +104,47 @@ TEST(RoundingCheck, IsQuietWhereThePlaceIsDetermined)
   };
   expectQuiet(vtkSmartPointer<vtkRotationInvariantDeformation>::New());
   expectQuiet(vtkSmartPointer<vtkShapePreservingDeformation>::New());
+}
+
+/// Two triangles on an edge whose ends are handles 1 and 2. A tip takes the mean of their maps:
+/// with half a turn of one of them that is a projection on its axis, which leaves the turn about
+/// it open, for motions alone and not for where the points are.
+vtkSmartPointer<vtkPolyData> TwoTriangles(bool isTipHeld)
+{
+  shapes::Shape pair;
+  pair.Positions.resize(4, 3);
+  pair.Positions << 0.0, 0.0, 0.0, 1.0, 0.1, 0.2, 0.4, 0.9, 0.1, 0.5, -0.8, 0.3;
+  pair.Faces.resize(2, 3);
+  pair.Faces << 0, 1, 2, 1, 0, 3;
+  auto surface = vtktest::MakePolyData(pair);
+  vtktest::AddArray(surface, "Handle", 1,
+    [isTipHeld](vtkIdType v, double* id) {
+      *id = v < 2 ? static_cast<double>(v + 1) : isTipHeld ? 2.0 : 0.0;
+    });
+  return surface;
+}
+
+TEST(RoundingCheck, SaysWhereMotionsLeaveATurnOpen)
+{
+  const auto free = TwoTriangles(false);
+  vtkNew<vtkSimilarityDeformation> half;
+  const std::string warning = WarningsOf(half.Get(), free, 180.0);
+  for (const std::string& part : { std::string("Rounding decides about 2 points"),
+         shapes::Advice("hold more points, use smaller motions, or Rotation Invariant Deformation "
+                        "with uniform LaplacianWeights and FrameProjection off.") })
+  {
+    EXPECT_NE(warning.find(part), std::string::npos) << warning;
+  }
+
+  // What it advises.
+  vtkNew<vtkSimilarityDeformation> held;
+  EXPECT_EQ(WarningsOf(held.Get(), TwoTriangles(true), 180.0), "");
+  vtkNew<vtkSimilarityDeformation> smaller;
+  EXPECT_EQ(WarningsOf(smaller.Get(), free, 170.0), "");
+  vtkNew<vtkRotationInvariantDeformation> linear;
+  linear->SetLaplacianWeightsToUniform();
+  linear->SetFrameProjection(vtkRotationInvariantDeformation::NONE);
+  EXPECT_EQ(WarningsOf(linear.Get(), free, 180.0), "");
 }
 
 /// The warnings of a bar of which handle 1 goes through a motion.

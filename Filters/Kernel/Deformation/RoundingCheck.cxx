@@ -12,6 +12,36 @@
 
 namespace cartan
 {
+namespace
+{
+/// The same numbers on every machine, in [-1, 1).
+double SignedUnit(std::mt19937& random)
+{
+  return std::ldexp(static_cast<double>(random()), -31) - 1.0;
+}
+
+Eigen::Vector3d SignedUnits(std::mt19937& random)
+{
+  const double x = SignedUnit(random);
+  const double y = SignedUnit(random);
+  return { x, y, SignedUnit(random) };
+}
+
+/// (I + [e]) A for a small random vector e; the identity stays.
+Eigen::Matrix3d TurnedSlightly(const Eigen::Matrix3d& transform, std::mt19937& random)
+{
+  const Eigen::Vector3d by = RoundingOfTurns * SignedUnits(random);
+  return transform.isIdentity(0.0) ? transform
+                                   : Eigen::Matrix3d(transform - transform.colwise().cross(by));
+}
+
+/// By a part of its length; zero stays.
+Eigen::Vector3d MovedSlightly(const Eigen::Vector3d& vector, std::mt19937& random)
+{
+  return vector + RoundingOfTurns * vector.norm() * SignedUnits(random);
+}
+}
+
 HandleProblem WithMovedPoints(HandleProblem problem)
 {
   Points moved = *problem.Rest;
@@ -21,12 +51,32 @@ HandleProblem WithMovedPoints(HandleProblem problem)
   {
     for (int c = 0; c < 3; ++c)
     {
-      moved(v, c) += by * (std::ldexp(static_cast<double>(random()), -31) - 1.0);
+      moved(v, c) += by * SignedUnit(random);
     }
   }
   FollowJoined(problem.JoinedWith, moved);
   problem.Rest = std::make_shared<const Points>(std::move(moved));
   return problem;
+}
+
+HandleTargets WithMovedTargets(HandleTargets targets)
+{
+  std::mt19937 random(2);
+  for (HandleMotion& motion : targets.Motions)
+  {
+    motion.Linear = TurnedSlightly(motion.Linear, random);
+    motion.RotationVector = MovedSlightly(motion.RotationVector, random);
+  }
+  for (Eigen::Index row = 0; row < targets.Transforms.rows(); ++row)
+  {
+    MatrixAt(targets.Transforms, row) = TurnedSlightly(MatrixAt(targets.Transforms, row), random);
+  }
+  for (Eigen::Index row = 0; row < targets.RotationVectors.rows(); ++row)
+  {
+    targets.RotationVectors.row(row) =
+      MovedSlightly(targets.RotationVectors.row(row).transpose(), random).transpose();
+  }
+  return targets;
 }
 
 double ShortMotion(const HandleProblem& problem)
@@ -117,7 +167,8 @@ std::string RoundingDifference::Describe() const
   }
   std::ostringstream text;
   text << "Rounding decides about " << this->Vertices.Describe("point", "points")
-       << ": when the points of the surface move by " << RoundingOfInput << " of its size, ";
+       << ": when the points of the surface move by " << RoundingOfInput
+       << " of its size, and motions turn by less, ";
   if (this->Largest > RoundingOfResult)
   {
     text.precision(2);

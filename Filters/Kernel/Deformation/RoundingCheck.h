@@ -13,12 +13,21 @@ namespace cartan
 /// are equally far from two handles, the results differ by any amount.
 constexpr double RoundingOfInput = 1e-12;
 
+/// By how much motions are turned with them, in radians: little enough that handles which move as
+/// one still count as such (see CommonMotion).
+constexpr double RoundingOfTurns = 2e-13;
+
 /// How far they may differ, in parts of the size.
 constexpr double RoundingOfResult = 1e-5;
 
 /// The problem with other rest positions, for everything that is found from them, such
 /// as slivers. The same numbers on every machine.
 HandleProblem WithMovedPoints(HandleProblem problem);
+
+/// The targets with maps and vectors that are turned at random by RoundingOfTurns, so that a
+/// turn which the motions alone leave open comes out otherwise too, as that of a point half-way
+/// between two handles of which one makes half a turn. What is not turned at all stays exact.
+HandleTargets WithMovedTargets(HandleTargets targets);
 
 /// What is compared beside positions: Transforms, the rotations in them, and the
 /// normals of the surface.
