@@ -262,8 +262,8 @@ public:
   /**
    * Surfaces of up to so many points are deformed twice, the second time with all
    * points moved by 1e-12 of the size and motions turned by less, and a warning says where
-   * that changes the result by more than 1e-5 of the size: rounding decides there. It takes the time
-   * and memory of a deformation. 0: never; nor are surfaces that stay in pieces on several
+   * that changes the result by more than 1e-5 of the size: rounding decides there. It takes the
+   * time and memory of a deformation. 0: never; nor are surfaces that stay in pieces on several
    * ranks. Default: 5000.
    */
   vtkSetClampMacro(RoundingCheckLimit, int, 0, VTK_INT_MAX);
