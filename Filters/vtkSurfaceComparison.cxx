@@ -2,8 +2,7 @@
 #include "vtkSurfaceComparison.h"
 
 #include "Bridge/FilterRun.h"
-#include "Bridge/MatchedSurfaces.h"
-#include "Bridge/PiecePair.h"
+#include "Bridge/MatchedPieces.h"
 #include "Bridge/SurfacePair.h"
 #include "Kernel/Measure/ShapeDistance.h"
 
@@ -54,10 +53,13 @@ void vtkSurfaceComparison::Execute(cartan::FilterRun& run)
     "was deformed.";
   if (run.Pieces())
   {
-    const cartan::SurfacePair pair =
-      cartan::ReadPiecePair(run, cartan::ShapeDistances::LooksAt, advice);
+    const cartan::MatchedPieces pieces = cartan::ReadMatchedPieces(run, { input, reference },
+      { "input", "reference" }, 1, cartan::ShapeDistances::LooksAt, advice);
+    const cartan::MatchedSurfaces& matched = pieces.Matched;
     run.Output()->ShallowCopy(input);
-    this->Compare(pair, run);
+    this->Compare({ matched.Mesh, matched.Cells, matched.Positions[1], matched.Positions[0], {},
+                    pieces.Model->TheSurface->Key, pieces.Model->Rows },
+      run);
     return;
   }
   const cartan::MatchedSurfaces matched = cartan::ReadMatchedSurfaces(

@@ -360,6 +360,16 @@ void vtkSurfaceMorph::Execute(cartan::FilterRun& run)
   this->NumberOfIterations = numbers.Iterations;
   this->SetupTime = numbers.SetupTime;
   this->EvaluationTime = numbers.EvaluationTime;
+  if (run.Pieces())
+  {
+    run.Output()->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), t);
+  }
+}
+
+bool vtkSurfaceMorph::SupportsPieces() const
+{
+  return this->Method == LINEAR && !this->CloseVolume && this->ParameterArrayName.empty() &&
+    this->State->Times.empty();
 }
 
 std::unique_ptr<cartan::SurfaceMorph> vtkSurfaceMorph::NewMorph(

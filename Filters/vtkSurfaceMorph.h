@@ -305,6 +305,7 @@ protected:
   void Execute(cartan::FilterRun& run) override;
   void ForgetResults() override;
   bool AcceptsEmptyInput() const override;
+  bool SupportsPieces() const override;
   void FollowFirstRank(
     vtkInformation* request, vtkInformationVector** inputVector, bool hasEnded) override;
 

@@ -180,10 +180,16 @@ void FilterRun::UsePieces(std::shared_ptr<const PieceGroup> group, bool isSettle
   this->IsSettled = isSettled;
 }
 
-std::shared_ptr<const PieceSurface> FilterRun::ReadPiece(
-  int port, const std::string& role, const VerticesLookedAt& reach)
+std::shared_ptr<const PieceSurface> FilterRun::ReadPiece(int port, const std::string& role)
 {
-  vtkPolyData* input = this->Input(port);
+  const auto piece = this->ReadPiece(this->Input(port), role, {});
+  this->Diagonal = port == 0 ? piece->Diagonal : this->Diagonal;
+  return piece;
+}
+
+std::shared_ptr<const PieceSurface> FilterRun::ReadPiece(
+  vtkPolyData* input, const std::string& role, const VerticesLookedAt& reach)
+{
   const auto piece = this->Keep<PieceSurface>(KeyOfPiece(input),
     [&]
     {
@@ -197,7 +203,6 @@ std::shared_ptr<const PieceSurface> FilterRun::ReadPiece(
     });
   this->Numbering = piece->Numbering;
   this->Warn(piece->Warning);
-  this->Diagonal = port == 0 ? piece->Diagonal : this->Diagonal;
   return piece;
 }
 

@@ -48,8 +48,11 @@ public:
   bool AreAllEmpty(bool isEmpty) const { return !this->IsSettled && !this->Group->Any(!isEmpty); }
 
   /// The piece on a port, kept for the next update; collective.
+  std::shared_ptr<const PieceSurface> ReadPiece(int port = 0, const std::string& role = "input");
+
+  /// The same of any surface, wide enough for `reach`, see cartan::ReadPiece.
   std::shared_ptr<const PieceSurface> ReadPiece(
-    int port = 0, const std::string& role = "input", const VerticesLookedAt& reach = {});
+    vtkPolyData* piece, const std::string& role, const VerticesLookedAt& reach);
 
   /// Of the box around the whole surface whose piece was read from port 0.
   double GetDiagonal() const { return this->Diagonal; }

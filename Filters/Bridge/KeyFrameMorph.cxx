@@ -4,7 +4,7 @@
 #include "Bridge/HandleArrays.h"
 #include "Bridge/JoinedCopies.h"
 #include "Bridge/KeyArrays.h"
-#include "Bridge/MatchedSurfaces.h"
+#include "Bridge/MatchedPieces.h"
 #include "Bridge/PointArrays.h"
 #include "Bridge/SurfaceWriter.h"
 #include "Kernel/Base/Bytes.h"
@@ -209,10 +209,12 @@ MorphNumbers MorphAt(
   }
   const double t = at.GetParameter();
   MorphNumbers numbers;
-  const MatchedSurfaces matched = ReadMatchedSurfaces(keys.Surfaces, keys.Roles,
+  const std::string advice =
     "Key frames need the same points and cells in the same order, such as one surface in several "
-    "poses.",
-    run.Context().Part(0.0, 0.1));
+    "poses.";
+  const MatchedSurfaces matched = run.Pieces()
+    ? ReadMatchedPieces(run, keys.Surfaces, keys.Roles, 0, {}, advice).Matched
+    : ReadMatchedSurfaces(keys.Surfaces, keys.Roles, advice, run.Context().Part(0.0, 0.1));
   for (const auto& surface : matched.Surfaces)
   {
     run.KeepSurface(surface);
@@ -221,7 +223,8 @@ MorphNumbers MorphAt(
   ContentKey key = options.Settings;
   for (std::size_t k = 0; k < keys.Surfaces.size(); ++k)
   {
-    key.Add(KeyOfSurface(keys.Surfaces[k]).GetValue());
+    key.Add(
+      (run.Pieces() ? KeyOfPiece(keys.Surfaces[k]) : KeyOfSurface(keys.Surfaces[k])).GetValue());
     key.Add(keys.Parameters[k]);
   }
   const auto prepared = run.Keep<PreparedMorph>(key,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Bridge/PiecePair.h"
+#include "Bridge/MatchedPieces.h"
 
-#include "Bridge/MatchedSurfaces.h"
 #include "Bridge/PointArrays.h"
 
 #include "vtkCellArray.h"
@@ -27,7 +26,7 @@ bool HasTrianglesAlone(vtkPolyData* surface)
 
 /// Throws on all ranks where some have found points of these names.
 void RequireNoPoints(const PieceGroup& group, const DistributedRows& rows,
-  const std::vector<std::int64_t>& names, const std::string& what, const std::string& advice)
+  const std::vector<std::int64_t>& names, const std::string& role, const std::string& what)
 {
   std::vector<std::int64_t> all = rows.Gather(names);
   std::sort(all.begin(), all.end());
@@ -43,15 +42,15 @@ void RequireNoPoints(const PieceGroup& group, const DistributedRows& rows,
       if (!bad.IsEmpty())
       {
         throw Error(ErrorCode::BadInput,
-          "The input has " + bad.Describe("point", "points") + " " + what + ": " + advice);
+          "The " + role + " has " + bad.Describe("point", "points") + " " + what);
       }
     });
 }
 
-/// The places of a piece's vertices in another surface of its points, those of ghosts as their
-/// owners have them, about the middle of the box around the whole.
-std::shared_ptr<const Points> PlacesOf(
-  vtkPolyData* surface, const PieceSurface& piece, const PieceGroup& group)
+/// The places of the model's vertices in another surface of its points, those of ghosts as their
+/// owners have them, about `origin`, which becomes the middle of the box around the whole.
+std::shared_ptr<const Points> PlacesOf(vtkPolyData* surface, const std::string& role,
+  const PieceSurface& piece, const PieceGroup& group, Eigen::Vector3d& origin)
 {
   const TriangleMesh& mesh = *piece.TheSurface->Mesh;
   const DistributedRows& rows = *piece.Rows;
@@ -75,10 +74,10 @@ std::shared_ptr<const Points> PlacesOf(
     }
   }
   RequireNoPoints(
-    group, rows, notFinite, "with a NaN or infinite coordinate", "repair or remove them.");
+    group, rows, notFinite, role, "with a NaN or infinite coordinate: repair or remove them.");
   rows.Max(extremes);
   const double size = (extremes.head<3>() + extremes.tail<3>()).norm();
-  const Eigen::RowVector3d center = 0.5 * (extremes.head<3>() - extremes.tail<3>()).transpose();
+  origin = 0.5 * (extremes.head<3>() - extremes.tail<3>());
   std::vector<std::int64_t> apart;
   for (int v = 0; v < mesh.NumberOfVertices(); ++v)
   {
@@ -88,27 +87,45 @@ std::shared_ptr<const Points> PlacesOf(
       apart.push_back(rows.GetName(v));
     }
     places->row(v) =
-      isUsed ? Eigen::RowVector3d(places->row(v) - center) : Eigen::RowVector3d::Zero();
+      isUsed ? Eigen::RowVector3d(places->row(v) - origin.transpose()) : Eigen::RowVector3d::Zero();
   }
-  RequireNoPoints(group, rows, apart, "in different places on several ranks",
-    "move the copies of a point together.");
+  RequireNoPoints(group, rows, apart, role,
+    "in different places on several ranks: move the copies of a point together.");
   return places;
 }
 }
 
-SurfacePair ReadPiecePair(FilterRun& run, const VerticesLookedAt& reach, const std::string& advice)
+MatchedPieces ReadMatchedPieces(FilterRun& run, const std::vector<vtkPolyData*>& surfaces,
+  const std::vector<std::string>& roles, std::size_t model, const VerticesLookedAt& reach,
+  const std::string& advice)
 {
   const PieceGroup& group = *run.Pieces();
-  vtkPolyData* input = run.Input(0);
-  vtkPolyData* reference = run.Input(1);
-  group.TogetherByRank([&] { RequireSameCells(input, "input", reference, "reference", advice); });
-  if (group.Any(!HasTrianglesAlone(input)))
+  group.TogetherByRank(
+    [&]
+    {
+      for (std::size_t k = 1; k < surfaces.size(); ++k)
+      {
+        RequireSameCells(surfaces[0], roles[0], surfaces[k], roles[k], advice);
+      }
+    });
+  if (group.Any(!HasTrianglesAlone(surfaces[0])))
   {
     run.GatherInstead("some of its cells are not triangles");
   }
-  const auto piece = run.ReadPiece(1, "reference", reach);
-  const Surface& surface = *piece->TheSurface;
-  return { surface.Mesh, surface.Cells, surface.Positions, PlacesOf(input, *piece, group),
-    surface.Borders, surface.Key, piece->Rows };
+  MatchedPieces pieces;
+  pieces.Model = run.ReadPiece(surfaces[model], roles[model], reach);
+  const Surface& surface = *pieces.Model->TheSurface;
+  MatchedSurfaces& matched = pieces.Matched;
+  matched.Mesh = surface.Mesh;
+  matched.Cells = surface.Cells;
+  for (std::size_t k = 0; k < surfaces.size(); ++k)
+  {
+    Eigen::Vector3d origin = surface.Origin;
+    matched.Positions.push_back(k == model
+        ? surface.Positions
+        : PlacesOf(surfaces[k], roles[k], *pieces.Model, group, origin));
+    matched.Origins.push_back(origin);
+  }
+  return pieces;
 }
 }
