@@ -27,14 +27,27 @@ namespace
 /// What the errors are measured against.
 struct ReferenceCurvatures
 {
+  explicit ReferenceCurvatures(
+    const cartan::SurfacePair& pair, const cartan::ExecutionContext& context)
+    : Fits(pair.Mesh, *pair.Reference, context.Part(0.0, 0.5))
+    , Areas(cartan::MixedVoronoiAreas(*pair.Mesh, *pair.Reference, context))
+  {
+    cartan::Curvatures fitted = this->Fits.Measure(*pair.Reference, context.Part(0.5, 1.0));
+    this->Mean = std::move(fitted.Mean);
+    this->Gaussian = std::move(fitted.Gaussian);
+    this->States = std::move(fitted.States);
+  }
+
+  cartan::CurvatureFits Fits;
+  Eigen::VectorXd Areas;
   Eigen::VectorXd Mean;
   Eigen::VectorXd Gaussian;
-  Eigen::VectorXd Areas;
   std::vector<cartan::CurvatureState> States;
 
   std::size_t GetBytes() const
   {
-    return 3 * this->Areas.size() * sizeof(double) + this->States.size();
+    return this->Fits.GetBytes() +
+      cartan::TotalBytes(this->Areas, this->Mean, this->Gaussian, this->States);
   }
 };
 
@@ -145,20 +158,8 @@ void vtkCurvatureError::Measure(cartan::FilterRun& run)
 void vtkCurvatureError::Compare(const cartan::SurfacePair& pair, cartan::FilterRun& run)
 {
   const auto before = run.Keep<ReferenceCurvatures>(pair.ReferenceKey,
-    [&]
-    {
-      const cartan::Curvatures fitted =
-        cartan::FitCurvatures(*pair.Mesh, *pair.Reference, run.Context().Part(0.1, 0.45));
-      auto kept = std::make_unique<ReferenceCurvatures>();
-      kept->Mean = fitted.Mean;
-      kept->Gaussian = fitted.Gaussian;
-      kept->States = fitted.States;
-      kept->Areas =
-        cartan::MixedVoronoiAreas(*pair.Mesh, *pair.Reference, run.Context().Part(0.45, 0.5));
-      return kept;
-    });
-  const cartan::Curvatures now =
-    cartan::FitCurvatures(*pair.Mesh, *pair.Current, run.Context().Part(0.5, 1.0));
+    [&] { return std::make_unique<ReferenceCurvatures>(pair, run.Context().Part(0.1, 0.5)); });
+  const cartan::Curvatures now = before->Fits.Measure(*pair.Current, run.Context().Part(0.5, 1.0));
   if (now.States == before->States)
   {
     run.Warn(DescribeUndetermined(now.States, "input and of the reference"));

@@ -11,6 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <utility>
 
 namespace cartan
 {
@@ -23,6 +27,13 @@ constexpr int VerticesPerReport = 50000;
 /// Enough for a solution that rounding cannot move where the neighbors leave
 /// part of the form open, too little to be seen elsewhere.
 constexpr double TinyRidge = 1e-10;
+
+/// Those of AppendCubicWeights().
+constexpr int WeightsPerPoint = 5;
+
+/// How much farther a surface may be stretched in one direction than in the other without other
+/// points being the nearest ones.
+constexpr double LargestStretchRatio = 2.0;
 
 /// How often normal curvatures are fitted, each time in the normal and with the
 /// chord lengths of the time before: the normal converges by a factor of ten or
@@ -51,9 +62,8 @@ Eigen::Vector3d AngleWeightedNormal(const TriangleMesh& mesh, const Points& poin
   return sum.normalized();
 }
 
-/// The form at v by a cubic. False where even five rings leave it open.
-bool FitDetermined(
-  Neighborhood& neighborhood, int v, const Eigen::Vector3d& normal, SecondForm& form)
+/// The points to which a cubic is fitted at v. False where even five rings do not determine one.
+bool CollectDetermined(Neighborhood& neighborhood, int v, const Eigen::Vector3d& normal)
 {
   neighborhood.CollectBall(v);
   for (int rings = 3; Determination(neighborhood, normal) < LeastDetermination; ++rings)
@@ -64,10 +74,18 @@ bool FitDetermined(
     }
     neighborhood.CollectRings(v, rings);
   }
+  return true;
+}
+
+/// The form at v by a cubic. False where the points leave it open.
+bool FitDetermined(
+  Neighborhood& neighborhood, int v, const Eigen::Vector3d& normal, SecondForm& form)
+{
   // The first fit finds the normal and how chords are measured, the second one
   // the curvature.
   SecondForm first;
-  return FitCubic(neighborhood, normal, nullptr, first) &&
+  return CollectDetermined(neighborhood, v, normal) &&
+    FitCubic(neighborhood, normal, nullptr, first) &&
     FitCubic(neighborhood, first.Normal, &first, form);
 }
 
@@ -134,10 +152,33 @@ Curvatures Zero(int numberOfVertices)
   curvatures.States.assign(numberOfVertices, CurvatureState::Determined);
   return curvatures;
 }
+
+/// Whether the images of two orthonormal tangents are about as long in all directions.
+bool IsEvenlyStretched(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
+{
+  const double mean = 0.5 * (a.squaredNorm() + b.squaredNorm());
+  const double difference = std::hypot(0.5 * (a.squaredNorm() - b.squaredNorm()), a.dot(b));
+  return mean + difference < LargestStretchRatio * LargestStretchRatio * (mean - difference);
 }
 
-Curvatures FitCurvatures(
-  const TriangleMesh& mesh, const Points& points, const ExecutionContext& context)
+/// Calls fit(begin, end) on ranges that cover the vertices.
+template <typename Fit>
+void ForVertices(int numberOfVertices, const Fit& fit, const ExecutionContext& context)
+{
+  for (int first = 0; first < numberOfVertices; first += VerticesPerReport)
+  {
+    context.Report(static_cast<double>(first) / numberOfVertices);
+    context.For(std::min(VerticesPerReport, numberOfVertices - first),
+      [&](int begin, int end) { fit(first + begin, first + end); });
+  }
+  context.Report(1.0);
+}
+
+/// By fitDetermined(neighborhood, v, normal, form) where that is true, and without a cubic where
+/// it is not.
+template <typename FitDetermined>
+Curvatures FitAll(const TriangleMesh& mesh, const Points& points,
+  const FitDetermined& fitDetermined, const ExecutionContext& context)
 {
   const Points normals = VertexNormals(mesh, points, context);
   Curvatures curvatures = Zero(mesh.NumberOfVertices());
@@ -156,7 +197,7 @@ Curvatures FitCurvatures(
       {
         curvatures.States[v] = CurvatureState::Open;
       }
-      else if (FitDetermined(neighborhood, v, normal, form))
+      else if (fitDetermined(neighborhood, v, normal, form))
       {
         curvatures.States[v] = StateOf(neighborhood, form, mesh, points, v);
       }
@@ -170,14 +211,111 @@ Curvatures FitCurvatures(
       Store(form, v, curvatures);
     }
   };
-  for (int first = 0; first < mesh.NumberOfVertices(); first += VerticesPerReport)
-  {
-    context.Report(static_cast<double>(first) / mesh.NumberOfVertices());
-    context.For(std::min(VerticesPerReport, mesh.NumberOfVertices() - first),
-      [&](int begin, int end) { fit(first + begin, first + end); });
-  }
-  context.Report(1.0);
+  ForVertices(mesh.NumberOfVertices(), fit, context);
   return curvatures;
+}
+}
+
+Curvatures FitCurvatures(
+  const TriangleMesh& mesh, const Points& points, const ExecutionContext& context)
+{
+  return FitAll(mesh, points, FitDetermined, context);
+}
+
+CurvatureFits::CurvatureFits(std::shared_ptr<const TriangleMesh> sharedMesh,
+  const Points& reference, const ExecutionContext& context)
+  : Mesh(std::move(sharedMesh))
+  , Begin(this->Mesh->NumberOfVertices() + 1, 0)
+  , OneRingSizes(this->Mesh->NumberOfVertices(), 0)
+{
+  struct Part
+  {
+    std::vector<int> Ids;
+    std::vector<float> Weights;
+  };
+  const Points normals = VertexNormals(*this->Mesh, reference, context);
+  std::map<int, Part> parts; // by their first vertices
+  std::mutex access;
+  const auto collect = [&](int begin, int end)
+  {
+    Part part;
+    Neighborhood neighborhood(*this->Mesh, reference, &normals);
+    for (int v = begin; v < end; ++v)
+    {
+      const Eigen::Vector3d normal = normals.row(v).transpose();
+      if (this->Mesh->IsUsed(v) && !normal.isZero(0.0) &&
+        CollectDetermined(neighborhood, v, normal) &&
+        AppendCubicWeights(neighborhood, normal, part.Weights))
+      {
+        for (int i = 0; i < neighborhood.Size(); ++i)
+        {
+          part.Ids.push_back(neighborhood.Vertex(i));
+        }
+        this->Begin[v + 1] = neighborhood.Size();
+        this->OneRingSizes[v] = neighborhood.OneRingSize();
+      }
+    }
+    const std::lock_guard<std::mutex> guard(access);
+    parts[begin] = std::move(part);
+  };
+  ForVertices(this->Mesh->NumberOfVertices(), collect, context);
+  std::partial_sum(this->Begin.begin(), this->Begin.end(), this->Begin.begin());
+  this->Ids.reserve(this->Begin.back());
+  this->Weights.reserve(WeightsPerPoint * static_cast<std::size_t>(this->Begin.back()));
+  for (auto& [begin, part] : parts)
+  {
+    this->Ids.insert(this->Ids.end(), part.Ids.begin(), part.Ids.end());
+    this->Weights.insert(this->Weights.end(), part.Weights.begin(), part.Weights.end());
+    part = {};
+  }
+}
+
+Curvatures CurvatureFits::Measure(const Points& current, const ExecutionContext& context) const
+{
+  return FitAll(
+    *this->Mesh, current,
+    [&](Neighborhood& neighborhood, int v, const Eigen::Vector3d& normal, SecondForm& form)
+    {
+      return this->Fit(neighborhood, v, normal, form) ||
+        FitDetermined(neighborhood, v, normal, form);
+    },
+    context);
+}
+
+/// The second fit at v to the points of the reference. False where others must be collected.
+bool CurvatureFits::Fit(
+  Neighborhood& neighborhood, int v, const Eigen::Vector3d& normal, SecondForm& form) const
+{
+  const int begin = this->Begin[v];
+  const int size = this->Begin[v + 1] - begin;
+  if (size == 0)
+  {
+    return false;
+  }
+  neighborhood.Take(v, this->Ids.data() + begin, size, this->OneRingSizes[v]);
+  Eigen::Matrix<double, 3, WeightsPerPoint> derivatives =
+    Eigen::Matrix<double, 3, WeightsPerPoint>::Zero();
+  const float* weights = this->Weights.data() + WeightsPerPoint * static_cast<std::size_t>(begin);
+  for (int i = 0; i < size; ++i, weights += WeightsPerPoint)
+  {
+    for (int k = 0; k < WeightsPerPoint; ++k)
+    {
+      derivatives.col(k) += static_cast<double>(weights[k]) * neighborhood.Offset(i);
+    }
+  }
+  SecondForm first;
+  if (!IsEvenlyStretched(derivatives.col(0), derivatives.col(1)) ||
+    !ToSecondForm(derivatives, first))
+  {
+    return false;
+  }
+  // Evenly stretched points determine as much as before, unless they are bent.
+  if (!neighborhood.FacesOneWay() ||
+    (!neighborhood.AreAllClose() && Determination(neighborhood, normal) < LeastDetermination))
+  {
+    return false;
+  }
+  return FitCubic(neighborhood, first.Normal, &first, form);
 }
 
 Curvatures CurvaturesFromNormals(const TriangleMesh& mesh, const Points& points,

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Base/Bytes.h"
 #include "Base/ExecutionContext.h"
 #include "Mesh/TriangleMesh.h"
 
+#include <memory>
 #include <vector>
 
 namespace cartan
 {
+class Neighborhood;
+struct SecondForm;
+
 /// What a mesh says about the curvatures of a vertex.
 enum class CurvatureState : unsigned char
 {
@@ -91,6 +96,49 @@ struct Curvatures
 /// half a second on one core.
 Curvatures FitCurvatures(
   const TriangleMesh& mesh, const Points& points, const ExecutionContext& context = {});
+
+/// The curvatures of surfaces that are deformed from one reference, in half the time of
+/// FitCurvatures() for each.
+///
+/// A surface is fitted around each vertex to the points that the reference has there, so that no
+/// difference from the reference's curvature comes from a choice of others. What the first of the
+/// two fits makes of the points is kept as weights of theirs over the reference's coordinates,
+/// which give the tangent plane and the form from which the second one starts. That is the same
+/// fit as in FitCurvatures(), with the current chord lengths: all that is said there of its
+/// errors holds, but that spheres that are bent from something else are right to five digits.
+/// On the reference and its rigid motions the results are those of FitCurvatures() up to
+/// rounding.
+///
+/// The points are collected anew, as FitCurvatures() does it, at vertices where the reference's
+/// do not determine a form, where the surface is stretched more than twice as far in one
+/// direction as in the other, and where it bends so much that they do not determine one any more
+/// or have come to lie on another side.
+class CurvatureFits
+{
+public:
+  /// O(#V), about 450 bytes per vertex.
+  CurvatureFits(std::shared_ptr<const TriangleMesh> mesh, const Points& reference,
+    const ExecutionContext& context = {});
+
+  /// Of `current` (#V x 3).
+  Curvatures Measure(const Points& current, const ExecutionContext& context = {}) const;
+
+  /// Without the mesh, which others hold too.
+  std::size_t GetBytes() const
+  {
+    return TotalBytes(this->Begin, this->OneRingSizes, this->Ids, this->Weights);
+  }
+
+private:
+  bool Fit(
+    Neighborhood& neighborhood, int v, const Eigen::Vector3d& normal, SecondForm& form) const;
+
+  std::shared_ptr<const TriangleMesh> Mesh;
+  std::vector<int> Begin;        // #V + 1: where the points around each vertex begin in Ids
+  std::vector<int> OneRingSizes; // #V
+  std::vector<int> Ids;
+  std::vector<float> Weights; // five for each of Ids
+};
 
 /// Curvatures from the change of given unit normals (#V x 3, such as
 /// VertexNormals) along the edges of each one-ring, the least-squares

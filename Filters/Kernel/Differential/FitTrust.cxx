@@ -48,6 +48,9 @@ constexpr double SamePlane = 1e-3;
 /// points of far more the triangles need not be looked at, neighbor by neighbor.
 constexpr int LargestValence = 12;
 
+/// How often a ring of triangles in two planes bends.
+constexpr int MostBends = 2;
+
 /// How far the normals n_w of the neighbors change otherwise than the form says: the
 /// least error of n_w - n = A (w - v) over the edges w - v, root mean square per length,
 /// in the tangent plane.
@@ -79,6 +82,12 @@ double HiddenFactor(const Neighborhood& neighborhood, const SecondForm& form, do
   return std::max(1.0, hidden);
 }
 
+/// Whether two planes are the same, by their normals of any length.
+inline bool AreInOnePlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
+{
+  return a.cross(b).squaredNorm() <= SamePlane * SamePlane * a.squaredNorm() * b.squaredNorm();
+}
+
 /// Whether the triangles at v lie in one plane or in two that meet in a line through v.
 bool HasStraightEdge(const TriangleMesh& mesh, const Points& points, int v)
 {
@@ -87,35 +96,38 @@ bool HasStraightEdge(const TriangleMesh& mesh, const Points& points, int v)
     return false;
   }
   const auto edge = [&](int d) -> Eigen::Vector3d
-  { return (points.row(mesh.Neighbor(d)) - points.row(v)).normalized().transpose(); };
+  { return (points.row(mesh.Neighbor(d)) - points.row(v)).transpose(); };
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
   Eigen::Vector3d last = Eigen::Vector3d::Zero();
   int bends = 0;
-  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
+  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v) && bends <= MostBends; ++d)
   {
     const int next = mesh.NextAround(v, d);
     if (next < 0)
     {
       continue;
     }
-    const Eigen::Vector3d normal = edge(d).cross(edge(next)).normalized();
+    const Eigen::Vector3d a = edge(d);
+    const Eigen::Vector3d b = edge(next);
+    const double squared = a.squaredNorm() + b.squaredNorm();
+    const Eigen::Vector3d normal = a.cross(b) / (squared > 0.0 ? squared : 1.0);
     if (first.isZero(0.0))
     {
       first = normal;
     }
     else
     {
-      bends += normal.cross(last).norm() > SamePlane ? 1 : 0;
+      bends += AreInOnePlane(normal, last) ? 0 : 1;
     }
     last = normal;
   }
   if (!mesh.IsBoundary(v))
   {
     // Around a point, two planes meet in two edges, which lie in one line.
-    return bends + (last.cross(first).norm() > SamePlane ? 1 : 0) <= 2;
+    return bends + (AreInOnePlane(last, first) ? 0 : 1) <= MostBends;
   }
-  const Eigen::Vector3d begin = edge(mesh.RingBegin(v));
-  const Eigen::Vector3d end = edge(mesh.RingEnd(v) - 1);
+  const Eigen::Vector3d begin = edge(mesh.RingBegin(v)).normalized();
+  const Eigen::Vector3d end = edge(mesh.RingEnd(v) - 1).normalized();
   return bends == 0 && begin.cross(end).norm() < SamePlane && begin.dot(end) < 0.0;
 }
 }

@@ -49,6 +49,34 @@ bool Neighborhood::IsClose(int i) const
   return i + 1 < this->CountWithOneRing || this->Cosines[i + 1] > CloseCosine;
 }
 
+bool Neighborhood::AreAllClose() const
+{
+  return *std::min_element(this->Cosines.begin(), this->Cosines.end()) > CloseCosine;
+}
+
+bool Neighborhood::FacesOneWay() const
+{
+  return std::all_of(this->Cosines.begin() + this->CountWithOneRing, this->Cosines.end(),
+    [](double cosine) { return cosine > FarCosine; });
+}
+
+void Neighborhood::Take(int v, const int* ids, int size, int oneRingSize)
+{
+  this->Ids.assign(1, v);
+  this->Ids.insert(this->Ids.end(), ids, ids + size);
+  this->Offsets.resize(size + 1);
+  this->Cosines.resize(size + 1);
+  this->Offsets[0].setZero();
+  this->Cosines[0] = 1.0;
+  for (int i = 1; i <= size; ++i)
+  {
+    const int w = this->Ids[i];
+    this->Offsets[i] = (this->Positions.row(w) - this->Positions.row(v)).transpose();
+    this->Cosines[i] = this->Normals ? this->Normals->row(v).dot(this->Normals->row(w)) : 1.0;
+  }
+  this->CountWithOneRing = oneRingSize + 1;
+}
+
 /// Of the neighbors of v, the place in its ring of the one nearest to the vertex in the
 /// middle; the first of those that rounding cannot tell apart.
 int Neighborhood::NearestInFan(int v) const

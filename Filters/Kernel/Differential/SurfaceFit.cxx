@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Differential/SurfaceFit.h"
 
+#include "Differential/MonomialFactor.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 namespace cartan
 {
@@ -33,101 +37,12 @@ constexpr double SlopeShare = 0.03;
 constexpr double CurvatureShare = 1e-8;
 constexpr double CubicShare = 0.1;
 
+/// Keeps what is zero from being divided by zero.
+constexpr double NoDivisor = 1e-300;
+
 /// How many more points than parameters a fit must have for its residuals to
 /// tell anything.
 constexpr double LeastFreedom = 1.0;
-
-/// The Cholesky factor of the normal equations of N monomials. There are two for each vertex:
-/// loops of a length that the compiler knows take a third of the time of Eigen's, which are made
-/// for large matrices.
-template <int N>
-class MonomialFactor
-{
-public:
-  using Vector = Eigen::Matrix<double, N, 1>;
-  using Matrix = Eigen::Matrix<double, N, N>;
-
-  /// Adds m m^T to the lower triangle of a sum.
-  static void AddSquare(const Vector& m, Matrix& sum)
-  {
-    for (int j = 0; j < N; ++j)
-    {
-      for (int i = j; i < N; ++i)
-      {
-        sum(i, j) += m[i] * m[j];
-      }
-    }
-  }
-
-  /// Of a matrix whose lower triangle is read. Not a number where it is not positive.
-  explicit MonomialFactor(const Matrix& matrix)
-    : Lower(matrix)
-  {
-    for (int j = 0; j < N; ++j)
-    {
-      for (int k = 0; k < j; ++k)
-      {
-        for (int i = j; i < N; ++i)
-        {
-          this->Lower(i, j) -= this->Lower(i, k) * this->Lower(j, k);
-        }
-      }
-      const double pivot = std::sqrt(this->Lower(j, j));
-      this->Inverse[j] = 1.0 / pivot;
-      this->Lower(j, j) = pivot;
-      for (int i = j + 1; i < N; ++i)
-      {
-        this->Lower(i, j) *= this->Inverse[j];
-      }
-    }
-  }
-
-  /// The squares of L's diagonal.
-  Vector Pivots() const { return this->Lower.diagonal().cwiseAbs2(); }
-
-  Vector Solve(Vector values) const
-  {
-    for (int j = 0; j < N; ++j)
-    {
-      values[j] *= this->Inverse[j];
-      for (int i = j + 1; i < N; ++i)
-      {
-        values[i] -= this->Lower(i, j) * values[j];
-      }
-    }
-    for (int j = N - 1; j >= 0; --j)
-    {
-      for (int i = j + 1; i < N; ++i)
-      {
-        values[j] -= this->Lower(i, j) * values[i];
-      }
-      values[j] *= this->Inverse[j];
-    }
-    return values;
-  }
-
-  Matrix InverseOfLower() const
-  {
-    Matrix inverse = Matrix::Zero();
-    for (int c = 0; c < N; ++c)
-    {
-      inverse(c, c) = this->Inverse[c];
-      for (int j = c; j < N; ++j)
-      {
-        inverse(j, c) = j == c ? this->Inverse[c] : inverse(j, c) * this->Inverse[j];
-        for (int i = j + 1; i < N; ++i)
-        {
-          inverse(i, c) -= this->Lower(i, j) * inverse(j, c);
-        }
-      }
-    }
-    return inverse;
-  }
-
-private:
-  Matrix Lower;
-  Vector Inverse; ///< of the diagonal
-};
 
 /// Axes in the plane normal to Normal along which the coordinates of the points
 /// are uncorrelated, and the lengths that are units along them.
@@ -241,9 +156,54 @@ double PlaneAxes::StandardError(
   return std::sqrt(std::max(squaredResiduals, 0.0) / left * std::max(sum, 0.0));
 }
 
+/// A second form in the plane of axes that are normal to its normal.
+struct PlanarForm
+{
+  PlanarForm(const SecondForm& form, const PlaneAxes& axes)
+  {
+    const double cosine = axes.A.dot(form.U);
+    const double sine = axes.A.dot(form.V);
+    const double mixed = 2.0 * cosine * sine * form.Uv;
+    this->Aa = cosine * cosine * form.Uu + mixed + sine * sine * form.Vv;
+    this->Bb = sine * sine * form.Uu - mixed + cosine * cosine * form.Vv;
+    this->Ab = cosine * sine * (form.Vv - form.Uu) + (cosine * cosine - sine * sine) * form.Uv;
+  }
+
+  /// Adds to the tangential part (x, y) of an offset from the vertex, of this height, what makes
+  /// it as long as the chord on a circle of curvature: along the direction in which the normal
+  /// turns on the way, a length t becomes (t^2 + h^2)^1/2. In coordinates corrected so,
+  /// cylinders as well as spheres are exactly quadratic.
+  ///
+  /// (t^2 + h^2)^1/2 - t = h tan(turn / 4) on a circle, where h / t is the tangent of half the
+  /// turn, which the turn that the form says bounds up to 120 degrees. Where the form is no
+  /// circle's, as along the asymptotic directions of a saddle, t may be anything, and of either
+  /// sign; there the correction fades out.
+  void LengthenToChord(double height, double& x, double& y) const
+  {
+    const double turnA = this->Aa * x + this->Ab * y;
+    const double turnB = this->Ab * x + this->Bb * y;
+    const double along = turnA * x + turnB * y; // t times the turn
+    const double squared = x * x + y * y;
+    const double size = std::abs(height);
+    // The tangent over the turn: h / t, or the turn's squared bound over that where it is less.
+    const double tangent = std::min(size / (std::abs(along) + NoDivisor),
+      std::abs(along) / (size * squared / (squared + size * size + NoDivisor) + NoDivisor));
+    const double turnSquared = turnA * turnA + turnB * turnB;
+    const double longer = std::copysign(
+      size * tangent / (1.0 + std::sqrt(1.0 + tangent * tangent * turnSquared)), along);
+    x += longer * turnA;
+    y += longer * turnB;
+  }
+
+  double Aa;
+  double Ab;
+  double Bb;
+};
+
 /// The monomials of the cubic without a constant: slopes in the plane, the
 /// higher ones in chord-length coordinates.
-Vector9 Monomials(const Eigen::Vector3d& offset, const PlaneAxes& axes, const SecondForm* earlier)
+Vector9 Monomials(
+  const Eigen::Vector3d& offset, const PlaneAxes& axes, const std::optional<PlanarForm>& earlier)
 {
   const double planarX = offset.dot(axes.A);
   const double planarY = offset.dot(axes.B);
@@ -251,9 +211,7 @@ Vector9 Monomials(const Eigen::Vector3d& offset, const PlaneAxes& axes, const Se
   double y = planarY;
   if (earlier)
   {
-    const Eigen::Vector3d correction = earlier->ChordCorrection(offset);
-    x += correction.dot(axes.A);
-    y += correction.dot(axes.B);
+    earlier->LengthenToChord(offset.dot(axes.Normal), x, y);
   }
   else
   {
@@ -270,6 +228,21 @@ Vector9 Monomials(const Eigen::Vector3d& offset, const PlaneAxes& axes, const Se
   monomials << planarX / axes.UnitA, planarY / axes.UnitB, 0.5 * x * x, x * y, 0.5 * y * y,
     x * x * x / 6.0, 0.5 * x * x * y, 0.5 * x * y * y, y * y * y / 6.0;
   return monomials;
+}
+
+std::optional<PlanarForm> ToPlane(const SecondForm* form, const PlaneAxes& axes)
+{
+  return form ? std::optional<PlanarForm>(PlanarForm(*form, axes)) : std::nullopt;
+}
+
+/// The Frobenius norms of the derivative tensors, in which a mixed derivative occurs
+/// several times: they do not depend on the choice of axes.
+Vector9 RidgeOfCubic(int numberOfPoints)
+{
+  Vector9 ridge;
+  ridge << TinyRidge, TinyRidge, TinyRidge, 2.0 * TinyRidge, TinyRidge, CubicRidge,
+    3.0 * CubicRidge, 3.0 * CubicRidge, CubicRidge;
+  return numberOfPoints * ridge;
 }
 
 /// The squared distance within which a quarter of the points is, without those
@@ -289,33 +262,6 @@ double NearQuarterSquared(const Neighborhood& neighborhood)
   std::nth_element(squares.begin(), quarter, end);
   return *quarter;
 }
-}
-
-Eigen::Vector3d SecondForm::ChordCorrection(const Eigen::Vector3d& offset) const
-{
-  const double u = offset.dot(this->U);
-  const double v = offset.dot(this->V);
-  const double turnU = this->Uu * u + this->Uv * v;
-  const double turnV = this->Uv * u + this->Vv * v;
-  const double turn = std::sqrt(turnU * turnU + turnV * turnV);
-  const double planar = std::sqrt(u * u + v * v);
-  if (!(turn * planar > 0.0) || offset.dot(this->Normal) == 0.0)
-  {
-    return Eigen::Vector3d::Zero();
-  }
-  // On a circle h / t is the tangent of half the turn, which the turn that the
-  // form says bounds up to 120 degrees. Where the form is no circle's, as along
-  // the asymptotic directions of a saddle, t may be anything, and of either
-  // sign; there the correction fades out.
-  const double height = std::abs(offset.dot(this->Normal));
-  const double along = (turnU * u + turnV * v) / turn;
-  const double bound = turn * offset.norm() / planar;
-  const double tangent = height < bound * std::abs(along)
-    ? height / std::abs(along)
-    : bound * bound * std::abs(along) / height;
-  // (t^2 + h^2)^1/2 - t = h tan(turn / 4).
-  const double longer = height * tangent / (1.0 + std::sqrt(1.0 + tangent * tangent));
-  return std::copysign(longer / turn, along) * (turnU * this->U + turnV * this->V);
 }
 
 double SecondForm::HalfTurnSine(const Eigen::Vector3d& edge) const
@@ -370,23 +316,19 @@ bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   {
     return false;
   }
+  const std::optional<PlanarForm> planar = ToPlane(earlier, axes);
   Matrix9 matrix = Matrix9::Zero();
   Vector9 rightHandSide = Vector9::Zero();
   double squaredHeights = 0.0;
   for (int i = 0; i < neighborhood.Size(); ++i)
   {
-    const Vector9 monomials = Monomials(neighborhood.Offset(i), axes, earlier);
+    const Vector9 monomials = Monomials(neighborhood.Offset(i), axes, planar);
     const double height = neighborhood.Offset(i).dot(normal);
     MonomialFactor<9>::AddSquare(monomials, matrix);
     rightHandSide += height * monomials;
     squaredHeights += height * height;
   }
-  // The Frobenius norms of the derivative tensors, in which a mixed derivative
-  // occurs several times: they do not depend on the choice of axes.
-  Vector9 ridge;
-  ridge << TinyRidge, TinyRidge, TinyRidge, 2.0 * TinyRidge, TinyRidge, CubicRidge,
-    3.0 * CubicRidge, 3.0 * CubicRidge, CubicRidge;
-  ridge *= neighborhood.Size();
+  const Vector9 ridge = RidgeOfCubic(neighborhood.Size());
   matrix.diagonal() += ridge;
   const MonomialFactor<9> factor(matrix);
   const Vector9 fit = factor.Solve(rightHandSide);
@@ -402,6 +344,60 @@ bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   return axes.ToSecondForm(fit, form);
 }
 
+bool AppendCubicWeights(
+  const Neighborhood& neighborhood, const Eigen::Vector3d& normal, std::vector<float>& weights)
+{
+  PlaneAxes axes;
+  if (!axes.Fit(neighborhood, normal))
+  {
+    return false;
+  }
+  Matrix9 matrix = RidgeOfCubic(neighborhood.Size()).asDiagonal();
+  for (int i = 0; i < neighborhood.Size(); ++i)
+  {
+    MonomialFactor<9>::AddSquare(Monomials(neighborhood.Offset(i), axes, std::nullopt), matrix);
+  }
+  const MonomialFactor<9> factor(matrix);
+  const double units[5] = { axes.UnitA, axes.UnitB, axes.UnitA * axes.UnitA,
+    axes.UnitA * axes.UnitB, axes.UnitB * axes.UnitB };
+  Eigen::Matrix<double, 9, 5> rows;
+  for (int k = 0; k < 5; ++k)
+  {
+    rows.col(k) = factor.Solve(Vector9::Unit(k)) / units[k];
+  }
+  if (!rows.allFinite())
+  {
+    return false;
+  }
+  for (int i = 0; i < neighborhood.Size(); ++i)
+  {
+    const Vector9 monomials = Monomials(neighborhood.Offset(i), axes, std::nullopt);
+    for (int k = 0; k < 5; ++k)
+    {
+      weights.push_back(static_cast<float>(rows.col(k).dot(monomials)));
+    }
+  }
+  return true;
+}
+
+bool ToSecondForm(const Eigen::Matrix<double, 3, 5>& derivatives, SecondForm& form)
+{
+  // The first form E, F, G; v = n x u is (x_v - (F / E) x_u) / sqrt(G - F^2 / E).
+  const Eigen::Vector3d tangentU = derivatives.col(0);
+  const Eigen::Vector3d tangentV = derivatives.col(1);
+  const double e = tangentU.squaredNorm();
+  const double shear = tangentU.dot(tangentV) / e;
+  const double width = tangentV.squaredNorm() - shear * shear * e;
+  form.Normal = tangentU.cross(tangentV).normalized();
+  form.U = tangentU / std::sqrt(e);
+  form.V = form.Normal.cross(form.U);
+  const Eigen::RowVector3d second = form.Normal.transpose() * derivatives.rightCols<3>();
+  form.Uu = -second[0] / e;
+  form.Uv = -(second[1] - shear * second[0]) / std::sqrt(e * width);
+  form.Vv = -(second[2] - 2.0 * shear * second[1] + shear * shear * second[0]) / width;
+  return std::isfinite(form.Uu * form.Vv) && std::isfinite(form.Uv * form.Uv);
+}
+
 bool FitNormalCurvatures(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   const SecondForm* earlier, SecondForm& form)
 {
@@ -412,6 +408,7 @@ bool FitNormalCurvatures(const Neighborhood& neighborhood, const Eigen::Vector3d
   }
   // The rows are already free of lengths; one unit for both axes keeps them so.
   axes.UnitA = axes.UnitB = std::sqrt(axes.UnitA * axes.UnitB);
+  const std::optional<PlanarForm> planar = ToPlane(earlier, axes);
   const double added = NearQuarterSquared(neighborhood);
   Matrix9 matrix = Matrix9::Zero();
   Vector9 rightHandSide = Vector9::Zero();
@@ -421,7 +418,7 @@ bool FitNormalCurvatures(const Neighborhood& neighborhood, const Eigen::Vector3d
     // coordinates: the distance to the nearest quarter is added to all distances.
     const Eigen::Vector3d& offset = neighborhood.Offset(i);
     const double weight = axes.UnitA * axes.UnitA / (offset.squaredNorm() + added);
-    const Vector9 monomials = weight * Monomials(offset, axes, earlier);
+    const Vector9 monomials = weight * Monomials(offset, axes, planar);
     MonomialFactor<9>::AddSquare(monomials, matrix);
     rightHandSide += weight * offset.dot(normal) * monomials;
   }

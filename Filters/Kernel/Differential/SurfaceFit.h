@@ -28,13 +28,6 @@ struct SecondForm
   /// form changes per length, in 1 / length^2.
   double Change = 0.0;
 
-  /// What to add to the tangential part of an offset from the vertex so that a
-  /// circle of curvature gets the length of its chord: along the direction in
-  /// which the normal turns on the way, a length tangential part t and a height
-  /// h become (t^2 + h^2)^1/2. In coordinates corrected so, cylinders as well
-  /// as spheres are exactly quadratic.
-  Eigen::Vector3d ChordCorrection(const Eigen::Vector3d& offset) const;
-
   /// The sine of half the turn of the normal along an edge from the vertex, if
   /// the edge is the chord of a circle. More than 1 where there is no such circle.
   double HalfTurnSine(const Eigen::Vector3d& edge) const;
@@ -81,6 +74,10 @@ public:
   /// The one-ring, and of the second ring what faces the same way.
   void CollectNearest(int v);
 
+  /// Points that were collected around v on another surface of the same connectivity: `ids`,
+  /// the neighbors of v first.
+  void Take(int v, const int* ids, int size, int oneRingSize);
+
   /// Without the vertex itself.
   int Size() const { return this->Count() - 1; }
 
@@ -94,6 +91,13 @@ public:
   /// Whether the i-th point is a neighbor or its normal has turned by less than
   /// 37 degrees.
   bool IsClose(int i) const;
+
+  /// Whether no normal has turned by 37 degrees, of the neighbors neither.
+  bool AreAllClose() const;
+
+  /// Whether no normal beyond the neighbors has turned so far, by 61 degrees, that the point may
+  /// be on another side of a tube.
+  bool FacesOneWay() const;
 
   /// The first points are the neighbors of the vertex: how many.
   int OneRingSize() const { return this->CountWithOneRing - 1; }
@@ -133,6 +137,20 @@ constexpr double LeastDetermination = 0.025;
 /// `earlier`, the form has a standard error and a change.
 bool FitCubic(const Neighborhood& neighborhood, const Eigen::Vector3d& normal,
   const SecondForm* earlier, SecondForm& form);
+
+/// What FitCubic() without `earlier` makes of the offsets of the points is linear in them: of
+/// each point its weights in the derivatives x_u, x_v, x_uu, x_uv, x_vv at the vertex. The
+/// coordinates (u, v) are lengths along orthonormal axes of the plane. False if the points
+/// coincide.
+///
+/// The same weights hold for any surface over these coordinates. They take linear functions for
+/// what they are, so that where the surface is turned, or stretched evenly, its form is, too.
+bool AppendCubicWeights(
+  const Neighborhood& neighborhood, const Eigen::Vector3d& normal, std::vector<float>& weights);
+
+/// The form from the derivatives x_u, x_v, x_uu, x_uv, x_vv of a regular surface, without
+/// standard error and change. False where they are not regular.
+bool ToSecondForm(const Eigen::Matrix<double, 3, 5>& derivatives, SecondForm& form);
 
 /// The form of the normal curvatures 2 h / |p|^2 toward the points, for
 /// neighborhoods that do not determine a quadric: what is left open is decided
