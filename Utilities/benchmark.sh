@@ -37,7 +37,8 @@ cmake --build build/benchmarks --target benchmarks
 build/benchmarks/bin/CartanBenchmarkSimilarity
 build/benchmarks/bin/CartanBenchmarkAsRigidAsPossible
 build/benchmarks/bin/CartanBenchmarkDifferential
-build/benchmarks/bin/CartanBenchmarkDrag
+timeout 1800 build/benchmarks/bin/CartanBenchmarkDrag 1 2 3 ||
+  echo "CartanBenchmarkDrag has not ended within half an hour: its last rows are missing."
 build/benchmarks/bin/CartanBenchmarkSetUp
 OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkExamples
 OMP_NUM_THREADS=1 build/benchmarks/bin/CartanBenchmarkMerge
