@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Measure/ShapeDistance.h"
 
-#include "Algebra/Rotation.h"
 #include "Differential/SurfaceFit.h"
 #include "Measure/Areas.h"
 #include "Mesh/Geometry.h"
 #include "Mesh/TriangleShape.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -100,6 +100,41 @@ Vector5 Monomials(const Eigen::Matrix<double, 3, 2>& axes, const Eigen::Vector3d
   return monomials;
 }
 
+/// Tangents (X1, X2) in the orthonormal basis of X1 / |X1| and what is normal to it and N.
+struct TangentBasis
+{
+  explicit TangentBasis(const Eigen::Matrix3d& frame)
+    : Length(frame.col(0).norm())
+  {
+    this->Basis << frame.col(0) / this->Length, frame.col(2).cross(frame.col(0)) / this->Length,
+      frame.col(2);
+    this->Along = this->Basis.col(0).dot(frame.col(1));
+    this->Across = this->Basis.col(1).dot(frame.col(1));
+  }
+
+  Eigen::Matrix3d Basis;
+  double Length; ///< X1 is (Length, 0)
+  double Along;  ///< X2 is (Along, Across)
+  double Across;
+};
+
+/// The orthogonal factor of the map that takes one frame (X1, X2, N) to another. It turns the
+/// normals into each other, and in the planes the map is (a b; 0 d), whose orthogonal factor is
+/// (a + d, b; -b, a + d) by its length.
+Eigen::Matrix3d RotationBetween(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to)
+{
+  const TangentBasis before(from);
+  const TangentBasis now(to);
+  const double a = now.Length / before.Length;
+  const double b = (now.Along - a * before.Along) / before.Across;
+  const double d = now.Across / before.Across;
+  const double size = std::hypot(a + d, b);
+  Eigen::Matrix3d turned = now.Basis;
+  turned.col(0) = ((a + d) * now.Basis.col(0) - b * now.Basis.col(1)) / size;
+  turned.col(1) = (b * now.Basis.col(0) + (a + d) * now.Basis.col(1)) / size;
+  return turned * before.Basis.transpose();
+}
+
 /// |grad R|_F^2 / 2 of the map from one patch to the other.
 double RotationEnergy(const QuadraticPatch& rest, const QuadraticPatch& deformed)
 {
@@ -108,12 +143,15 @@ double RotationEnergy(const QuadraticPatch& rest, const QuadraticPatch& deformed
     return 0.0;
   }
   // F T = T' and its derivative F' T = dT' - F dT
-  const Eigen::Matrix3d inverse = rest.Frame().inverse();
-  const Eigen::Matrix3d map = deformed.Frame() * inverse;
-  const Eigen::Matrix3d rotation = ProjectOnRotations(map);
+  const Eigen::Matrix3d restFrame = rest.Frame();
+  const Eigen::Matrix3d frame = deformed.Frame();
+  const Eigen::Matrix3d inverse = restFrame.inverse();
+  const Eigen::Matrix3d map = frame * inverse;
+  const Eigen::Matrix3d rotation = RotationBetween(restFrame, frame);
   const Eigen::Matrix3d stretch = rotation.transpose() * map;
   const Eigen::Matrix3d inertia =
     stretch.trace() * Eigen::Matrix3d::Identity() - 0.5 * (stretch + stretch.transpose());
+  const Eigen::Matrix3d inverseInertia = inertia.inverse();
   Eigen::Matrix<double, 3, 2> turns;
   for (int i = 0; i < 2; ++i)
   {
@@ -121,7 +159,7 @@ double RotationEnergy(const QuadraticPatch& rest, const QuadraticPatch& deformed
       (deformed.FrameDerivative(i) - map * rest.FrameDerivative(i)) * inverse;
     const Eigen::Vector3d axial(
       change(2, 1) - change(1, 2), change(0, 2) - change(2, 0), change(1, 0) - change(0, 1));
-    turns.col(i) = inertia.ldlt().solve(axial);
+    turns.col(i) = inverseInertia * axial;
   }
   // sum of g^ij omega_i . omega_j, g the first fundamental form of the reference
   Eigen::Matrix2d metric;

@@ -42,6 +42,18 @@ void SetUndefined(int row, Stretches& stretches)
   stretches.Smaller[row] = Undefined;
 }
 
+/// Cosine and sine of half an angle between -pi and pi, from those of the angle.
+Eigen::Vector2d HalfAngle(double cosine, double sine)
+{
+  if (cosine >= 0.0)
+  {
+    const double half = std::sqrt(0.5 * (1.0 + cosine));
+    return { half, 0.5 * sine / half };
+  }
+  const double half = std::copysign(std::sqrt(0.5 * (1.0 - cosine)), sine);
+  return { 0.5 * sine / half, half };
+}
+
 /// The singular values and left singular vectors of a linear map from the plane to space.
 void SetStretch(const TangentMap& map, int row, Stretches& stretches)
 {
@@ -55,15 +67,19 @@ void SetStretch(const TangentMap& map, int row, Stretches& stretches)
   const Eigen::Vector3d v = d > 0.0 ? Eigen::Vector3d(rest / d) : Eigen::Vector3d::Zero();
   // (a b; 0 d) is the sum of a rotation by alpha times q and a reflection by beta times r
   // (Blinn, Consider the lowly 2x2 matrix, 1996): its singular values are q + r and q - r.
-  const double q = 0.5 * std::hypot(a + d, b);
-  const double r = 0.5 * std::hypot(a - d, b);
+  const double q = 0.5 * std::sqrt((a + d) * (a + d) + b * b);
+  const double r = 0.5 * std::sqrt((a - d) * (a - d) + b * b);
   stretches.Larger[row] = q + r;
   stretches.Smaller[row] = std::max(0.0, q - r);
   if (r > SameStretch * q)
   {
-    const double angle = 0.5 * (std::atan2(b, a - d) + std::atan2(-b, a + d));
-    const Eigen::Vector3d larger = std::cos(angle) * u + std::sin(angle) * v;
-    const Eigen::Vector3d smaller = std::cos(angle) * v - std::sin(angle) * u;
+    // Turned from u by half the sum of both angles.
+    const Eigen::Vector2d reflected = HalfAngle(0.5 * (a - d) / r, 0.5 * b / r);
+    const Eigen::Vector2d turned = HalfAngle(0.5 * (a + d) / q, -0.5 * b / q);
+    const double cosine = reflected[0] * turned[0] - reflected[1] * turned[1];
+    const double sine = reflected[0] * turned[1] + reflected[1] * turned[0];
+    const Eigen::Vector3d larger = cosine * u + sine * v;
+    const Eigen::Vector3d smaller = cosine * v - sine * u;
     stretches.LargerDirections.row(row) = larger.transpose();
     stretches.SmallerDirections.row(row) = smaller.transpose();
   }
