@@ -3,6 +3,7 @@
 #include "HandleShapes.h"
 #include "Ids.h"
 #include "Kernel/Algebra/Rotation.h"
+#include "Kernel/Mesh/RayTree.h"
 #include "Kernel/Morph/DiscreteFormsMorph.h"
 #include "Kernel/Morph/IsometricMorph.h"
 #include "Kernel/Morph/LinearMorph.h"
@@ -131,6 +132,15 @@ TEST(Progress, OfSimilarityNeverRunsBackWhereTheMotionFactorizes)
   cartan::DeformedSurface result;
   deformer.Deform(Targets(problem, false), true, result, recorder.Context());
   recorder.Expect("Similarity");
+}
+
+TEST(Progress, OfATreeOfManyTrianglesNeverRunsBack)
+{
+  const shapes::Shape shape = shapes::Bar(100, 100, 100, { 1.0, 2.0, 3.0 }, true);
+  Recorder recorder;
+  const cartan::RayTree tree(shape.Faces, shape.Positions, recorder.Context());
+  EXPECT_GT(recorder.Fractions.size(), 4U);
+  recorder.Expect("ray tree");
 }
 
 TEST(Progress, OfMorphsNeverRunsBack)

@@ -135,7 +135,9 @@ struct RayTree::Builder
     this->Tree.Nodes[index] = node;
     if (range.Size() > TrianglesPerReport)
     {
-      this->Context.Report(static_cast<double>(range.End) / static_cast<double>(this->Ids.size()));
+      // By leaves, since the ranges come out of order; one of them may not be full.
+      const double done = static_cast<double>(this->Tree.Leaves.size()) * Width;
+      this->Context.Report(std::min(done / static_cast<double>(this->Ids.size()), 1.0));
     }
     return all;
   }
