@@ -365,6 +365,17 @@ TEST(ConstrainedSolver, IsNotConnectedByEntriesThatAreZero)
     });
 }
 
+TEST(ConstrainedSolver, NamesAPointInSeveralPartsOnce)
+{
+  SparseMatrix matrix(4, 4);
+  matrix.setIdentity();
+  ConstrainedSolver solver;
+  ExpectError(ErrorCode::SingularSystem, { "2 points (ids 7, 8)", "4 connected parts" },
+    [&]() {
+      solver.Factorize(matrix, { 0, 0, 0, 0 }, {}, { 7, 8, 7, 8 });
+    });
+}
+
 TEST(ConstrainedSolver, RefusesAMatrixThatIsNotPositiveAndWorksAfterwards)
 {
   const SparseMatrix good = CotangentLaplacian(shapes::Icosphere(1));

@@ -5,8 +5,8 @@
 #include "Base/FloodFill.h"
 #include "Base/FreedMemory.h"
 
-#include <algorithm>
 #include <new>
+#include <set>
 
 namespace cartan
 {
@@ -48,7 +48,7 @@ void RequireConstraints(const SparseMatrix& matrix, const std::vector<char>& isF
   const int size = static_cast<int>(matrix.rows());
   std::vector<char> visited(size, 0);
   std::vector<int> part;
-  IdSample unconstrained;
+  std::set<int> unconstrained; // a vertex may have unknowns in several parts
   int parts = 0;
   for (int seed = 0; seed < size; ++seed)
   {
@@ -58,22 +58,20 @@ void RequireConstraints(const SparseMatrix& matrix, const std::vector<char>& isF
       continue;
     }
     ++parts;
-    std::sort(part.begin(), part.end());
-    int lastVertex = -1;
     for (const int unknown : part)
     {
-      const int vertex = vertices.empty() ? unknown : vertices[unknown];
-      if (vertex != lastVertex)
-      {
-        lastVertex = vertex;
-        unconstrained.Add(vertex);
-      }
+      unconstrained.insert(vertices.empty() ? unknown : vertices[unknown]);
     }
   }
   if (parts > 0)
   {
+    IdSample sample;
+    for (const int vertex : unconstrained)
+    {
+      sample.Add(vertex);
+    }
     throw Error(ErrorCode::SingularSystem,
-      "The system is singular: " + unconstrained.Describe("point", "points") + " in " +
+      "The system is singular: " + sample.Describe("point", "points") + " in " +
         std::to_string(parts) +
         (parts == 1 ? " connected part have no constraint. Fix"
                     : " connected parts have no constraint. In each part, fix") +
