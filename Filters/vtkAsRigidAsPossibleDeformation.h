@@ -46,6 +46,7 @@
 #ifndef vtkAsRigidAsPossibleDeformation_h
 #define vtkAsRigidAsPossibleDeformation_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceDeformation.h"
 
 class VTKCARTAN_EXPORT vtkAsRigidAsPossibleDeformation : public vtkSurfaceDeformation
@@ -84,7 +85,7 @@ public:
    * than the default keeps lengths better, in more iterations, and lets bodies crease.
    * Default: 0.03.
    */
-  vtkSetClampMacro(Bending, double, 0.0, 1e6);
+  vtkSetNumberMacro(Bending, 0.0, 1e6);
   vtkGetMacro(Bending, double);
   ///@}
 
@@ -127,7 +128,7 @@ public:
    * Iterations stop when the energy decreases by less than this fraction.
    * Default: 1e-4.
    */
-  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  vtkSetNumberMacro(Tolerance, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);
   ///@}
 

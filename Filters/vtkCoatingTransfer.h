@@ -36,6 +36,7 @@
 #ifndef vtkCoatingTransfer_h
 #define vtkCoatingTransfer_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceFilter.h"
 
 #include <string> // For array names
@@ -129,7 +130,7 @@ public:
    * How long the waves are, at most, that count as details and make the coating, in mean
    * edges of the source, >= 0. No effect with a smooth source. Default: 10.
    */
-  vtkSetClampMacro(Smoothing, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(Smoothing, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Smoothing, double);
   ///@}
 
@@ -165,7 +166,7 @@ public:
    * How far into the region, over the surface, the coating rises to its strength, in length
    * units, >= 0. Default: 0.
    */
-  vtkSetClampMacro(FadeWidth, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(FadeWidth, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(FadeWidth, double);
   ///@}
 

@@ -29,6 +29,7 @@
 
 #include "vtkCartanModule.h" // For the export macro
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkWriter.h"
 
 #include <memory> // For what is collected
@@ -83,7 +84,7 @@ public:
    * search decodes the surface once for each number of bits and factorizes a system for each
    * number of anchors that it tries. 0 uses Bits and NumberOfAnchors. Default: 0.
    */
-  vtkSetClampMacro(MaximumError, double, 0.0, 1.0);
+  vtkSetNumberMacro(MaximumError, 0.0, 1.0);
   vtkGetMacro(MaximumError, double);
   ///@}
 
@@ -92,7 +93,7 @@ public:
    * How much the distance counts in the visual error, in [0, 1]; the rest is roughness.
    * Default: .15.
    */
-  vtkSetClampMacro(VisualErrorAlpha, double, 0.0, 1.0);
+  vtkSetNumberMacro(VisualErrorAlpha, 0.0, 1.0);
   vtkGetMacro(VisualErrorAlpha, double);
   ///@}
 

@@ -31,6 +31,7 @@
 #ifndef vtkCurveDeformation_h
 #define vtkCurveDeformation_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceFilter.h"
 
 #include <string> // For array names
@@ -109,7 +110,7 @@ public:
   /**
    * For FEATURE_EDGES: the angle between normals in degrees, 0 to 180. Default: 30.
    */
-  vtkSetClampMacro(FeatureAngle, double, 0.0, 180.0);
+  vtkSetNumberMacro(FeatureAngle, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
   ///@}
 
@@ -170,7 +171,7 @@ public:
    * Points farther from the source curve along the surface, in length units, are pinned;
    * 0: none. Default: 0.
    */
-  vtkSetClampMacro(Reach, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(Reach, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Reach, double);
   ///@}
 
@@ -180,7 +181,7 @@ public:
    * weight f / (1 - f), so that .1 is a hint and .99 is followed up to the finest detail.
    * Default: 1.
    */
-  vtkSetClampMacro(Fidelity, double, 0.0, 1.0);
+  vtkSetNumberMacro(Fidelity, 0.0, 1.0);
   vtkGetMacro(Fidelity, double);
   ///@}
 
@@ -236,7 +237,7 @@ public:
    * it is concave; 0 flat; negative the other way. With SharpRidge those on the curve alone.
    * They vanish in flat places, which stay. Default: 1.
    */
-  vtkSetClampMacro(RidgeScale, double, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(RidgeScale, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX);
   vtkGetMacro(RidgeScale, double);
   ///@}
 
@@ -246,7 +247,7 @@ public:
    * to one side, as for suggestive contours; to the other where the curve runs the other way.
    * Default: 0.
    */
-  vtkSetClampMacro(RidgeTurn, double, -180.0, 180.0);
+  vtkSetNumberMacro(RidgeTurn, -180.0, 180.0);
   vtkGetMacro(RidgeTurn, double);
   ///@}
 
@@ -255,7 +256,7 @@ public:
    * How far the ridge reaches to each side along the surface, in length units. 0: five
    * times the mean length of the source curve's edges. Default: 0.
    */
-  vtkSetClampMacro(RidgeWidth, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(RidgeWidth, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(RidgeWidth, double);
   ///@}
 

@@ -44,6 +44,7 @@
 #define vtkDifferentialReconstruction_h
 
 #include "vtkDifferentialFilter.h"
+#include "vtkSetNumberMacro.h" // For properties
 
 class VTKCARTAN_EXPORT vtkDifferentialReconstruction : public vtkDifferentialFilter
 {
@@ -103,7 +104,7 @@ public:
    * The weight w > 0 of a soft anchor: adds w^2 times its squared distance to the sum of
    * squared residuals. Has no effect in the other modes. Default: 1.
    */
-  vtkSetClampMacro(ConstraintWeight, double, 1e-6, 1e6);
+  vtkSetNumberMacro(ConstraintWeight, 1e-6, 1e6);
   vtkGetMacro(ConstraintWeight, double);
   ///@}
 

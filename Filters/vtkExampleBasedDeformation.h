@@ -29,6 +29,7 @@
 #ifndef vtkExampleBasedDeformation_h
 #define vtkExampleBasedDeformation_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceDeformation.h"
 
 class vtkAlgorithmOutput;
@@ -80,7 +81,7 @@ public:
    * Between the pose of the examples, 0, and the result of RigidMethod, 1: positions are
    * blended. Default: 0.
    */
-  vtkSetClampMacro(Rigidness, double, 0.0, 1.0);
+  vtkSetNumberMacro(Rigidness, 0.0, 1.0);
   vtkGetMacro(Rigidness, double);
   ///@}
 
@@ -126,7 +127,7 @@ public:
   /**
    * Iterations stop when no weight changes by more than this, >= 0. Default: 1e-6.
    */
-  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  vtkSetNumberMacro(Tolerance, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);
   ///@}
 

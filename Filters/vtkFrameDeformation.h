@@ -34,6 +34,7 @@
 #ifndef vtkFrameDeformation_h
 #define vtkFrameDeformation_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceDeformation.h"
 
 namespace cartan
@@ -151,7 +152,7 @@ public:
    * The largest angle that the table is to serve, in degrees, > 0. Where the method needs
    * too many fields for it, the table is shorter (GetTabulatedRange()). Default: 180.
    */
-  vtkSetClampMacro(TurnRange, double, 1e-3, 3600.0);
+  vtkSetNumberMacro(TurnRange, 1e-3, 3600.0);
   vtkGetMacro(TurnRange, double);
   ///@}
 
@@ -160,7 +161,7 @@ public:
    * How far points of the table may be from the solution, as a fraction of the bounding box's
    * diagonal. Default: 1e-5.
    */
-  vtkSetClampMacro(TurnTolerance, double, 1e-6, 1.0);
+  vtkSetNumberMacro(TurnTolerance, 1e-6, 1.0);
   vtkGetMacro(TurnTolerance, double);
   ///@}
 

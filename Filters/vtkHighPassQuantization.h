@@ -30,6 +30,7 @@
 #ifndef vtkHighPassQuantization_h
 #define vtkHighPassQuantization_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceFilter.h"
 
 class VTKCARTAN_EXPORT vtkHighPassQuantization : public vtkSurfaceFilter
@@ -66,7 +67,7 @@ public:
    * The largest root mean square of the visual error, in parts of the bounding box's
    * diagonal, >= 0: the least number of bits that meets it is used. 0 uses Bits. Default: 0.
    */
-  vtkSetClampMacro(MaximumError, double, 0.0, 1.0);
+  vtkSetNumberMacro(MaximumError, 0.0, 1.0);
   vtkGetMacro(MaximumError, double);
   ///@}
 
@@ -75,7 +76,7 @@ public:
    * How much the distance counts in the visual error, in [0, 1]; the rest is roughness.
    * Default: .15.
    */
-  vtkSetClampMacro(VisualErrorAlpha, double, 0.0, 1.0);
+  vtkSetNumberMacro(VisualErrorAlpha, 0.0, 1.0);
   vtkGetMacro(VisualErrorAlpha, double);
   ///@}
 

@@ -38,6 +38,7 @@
 #ifndef vtkLandmarkHandles_h
 #define vtkLandmarkHandles_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceFilter.h"
 
 #include <string> // For array names
@@ -87,7 +88,7 @@ public:
    * How far a landmark may be from the nearest point of the surface, in length units, >= 0.
    * 0: any distance. Default: 0.
    */
-  vtkSetClampMacro(Tolerance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(Tolerance, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Tolerance, double);
   ///@}
 
@@ -98,7 +99,7 @@ public:
    * it; the other half is for methods of another energy. 0: the target is met exactly.
    * Default: 0.
    */
-  vtkSetClampMacro(Accuracy, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(Accuracy, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Accuracy, double);
   ///@}
 

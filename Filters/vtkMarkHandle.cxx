@@ -32,6 +32,8 @@ vtkStandardNewMacro(vtkMarkHandle);
 
 namespace
 {
+constexpr int MostMarkedIds = 100000000;
+
 // Points without a comparable value (NaN coordinates) are on neither side.
 void AddInside(
   vtkPolyData* input, vtkImplicitFunction* function, bool insideOut, cartan::PointMask& mask)
@@ -191,9 +193,9 @@ vtkExtractSelection* vtkMarkHandle::GetSelectionExtractor()
 
 void vtkMarkHandle::SetNumberOfPointIds(int count)
 {
-  if (count < 0)
+  if (count < 0 || count > MostMarkedIds)
   {
-    vtkErrorMacro("A list has 0 point ids or more; got " << count << ".");
+    vtkErrorMacro("There are 0 to " << MostMarkedIds << " PointIds; got " << count << ".");
     return;
   }
   if (count != this->GetNumberOfPointIds())
@@ -205,9 +207,10 @@ void vtkMarkHandle::SetNumberOfPointIds(int count)
 
 void vtkMarkHandle::SetPointId(int index, vtkIdType id)
 {
-  if (index < 0)
+  if (index < 0 || index >= MostMarkedIds)
   {
-    vtkErrorMacro("The list of point ids begins at 0; got " << index << ".");
+    vtkErrorMacro(
+      "PointIds are numbered from 0 to " << MostMarkedIds - 1 << "; got " << index << ".");
     return;
   }
   this->SetNumberOfPointIds(std::max(index + 1, this->GetNumberOfPointIds()));

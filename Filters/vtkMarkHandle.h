@@ -36,7 +36,8 @@
 #ifndef vtkMarkHandle_h
 #define vtkMarkHandle_h
 
-#include "vtkSmartPointer.h" // For the held objects
+#include "vtkSetNumberMacro.h" // For properties
+#include "vtkSmartPointer.h"   // For the held objects
 #include "vtkSurfaceFilter.h"
 
 #include <string> // For the array's name
@@ -133,7 +134,7 @@ public:
   ///@{
   /**
    * Points of the region by their ids, >= 0 and less than the number of points;
-   * others are an error. In a composite data set, ids are counted on from block
+   * others are an error. Up to 100,000,000. In a composite data set, ids are counted on from block
    * to block. Unlike a selection they need no other filter, so that states and
    * traces in Python hold them. Default: none.
    */
@@ -158,7 +159,7 @@ public:
    * length units, >= 0. Together with GrowRings, points that either reaches are
    * added. Default: 0.
    */
-  vtkSetClampMacro(GrowDistance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(GrowDistance, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(GrowDistance, double);
   ///@}
 

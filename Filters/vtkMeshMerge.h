@@ -50,6 +50,7 @@
 #ifndef vtkMeshMerge_h
 #define vtkMeshMerge_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceFilter.h"
 
 #include <memory> // For the motions
@@ -107,7 +108,7 @@ public:
    * How far from its loops, over the surface, the source moves with DEPENDENT, in length
    * units, >= 0. 0: everywhere but at handles. Default: 0.
    */
-  vtkSetClampMacro(BendWidth, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(BendWidth, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(BendWidth, double);
   ///@}
 
@@ -118,7 +119,7 @@ public:
    * from the target's into the source's. In length units of the target, and of the source
    * as it is in the result; >= 0. 0: none, the surfaces touch at their loops. Default: 0.
    */
-  vtkSetClampMacro(TransitionWidth, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(TransitionWidth, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TransitionWidth, double);
   ///@}
 
@@ -127,7 +128,7 @@ public:
    * With a TransitionWidth, the width of the source's band where that is another one, >= 0.
    * 0: the same. Default: 0.
    */
-  vtkSetClampMacro(SourceTransitionWidth, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(SourceTransitionWidth, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(SourceTransitionWidth, double);
   ///@}
 

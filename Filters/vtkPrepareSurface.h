@@ -65,6 +65,7 @@
 #ifndef vtkPrepareSurface_h
 #define vtkPrepareSurface_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceFilter.h"
 
 #include <string> // For Report
@@ -102,7 +103,7 @@ public:
    * nearest of those with a smaller id that are kept, so none moves by more than the
    * tolerance; triangles with an edge shorter than that collapse.
    */
-  vtkSetClampMacro(Tolerance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(Tolerance, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Tolerance, double);
   vtkSetMacro(ToleranceIsAbsolute, bool);
   vtkGetMacro(ToleranceIsAbsolute, bool);
@@ -180,7 +181,7 @@ public:
    * Components with less than this part of the surface's area are removed with
    * their points. 0 to 1; 0, the default, keeps all.
    */
-  vtkSetClampMacro(MinimumComponentArea, double, 0.0, 1.0);
+  vtkSetNumberMacro(MinimumComponentArea, 0.0, 1.0);
   vtkGetMacro(MinimumComponentArea, double);
   ///@}
 
@@ -199,7 +200,7 @@ public:
    * If not 0, holes with a longer border than this, in length units, are not
    * filled. 0 by default.
    */
-  vtkSetClampMacro(MaximumHoleLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(MaximumHoleLength, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(MaximumHoleLength, double);
   ///@}
 
@@ -220,7 +221,7 @@ public:
    * Edges with a larger angle between the normals on either side, in degrees, are
    * not flipped. 0 to 180, 10 by default.
    */
-  vtkSetClampMacro(FlipAngle, double, 0.0, 180.0);
+  vtkSetNumberMacro(FlipAngle, 0.0, 180.0);
   vtkGetMacro(FlipAngle, double);
   ///@}
 

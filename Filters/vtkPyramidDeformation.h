@@ -32,6 +32,7 @@
 #ifndef vtkPyramidDeformation_h
 #define vtkPyramidDeformation_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceDeformation.h"
 
 class VTKCARTAN_EXPORT vtkPyramidDeformation : public vtkSurfaceDeformation
@@ -82,7 +83,7 @@ public:
    * Iterations stop when the energy decreases by less than this fraction, 0 to 1.
    * Default: 1e-4.
    */
-  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  vtkSetNumberMacro(Tolerance, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);
   ///@}
 

@@ -35,6 +35,7 @@
 #define vtkShapePreservingDeformation_h
 
 #include "vtkFrameDeformation.h"
+#include "vtkSetNumberMacro.h" // For properties
 
 class VTKCARTAN_EXPORT vtkShapePreservingDeformation : public vtkFrameDeformation
 {
@@ -61,7 +62,7 @@ public:
    * Iterations stop when the field changes by less than this fraction of its
    * largest value. Default: 1e-6.
    */
-  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  vtkSetNumberMacro(Tolerance, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);
   ///@}
 

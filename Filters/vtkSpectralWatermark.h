@@ -41,6 +41,7 @@
 #ifndef vtkSpectralWatermark_h
 #define vtkSpectralWatermark_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceFilter.h"
 
 #include <string> // For message and key
@@ -136,7 +137,7 @@ public:
    * mean square change of the points is at most Strength sqrt(3 ModeFraction) diagonals.
    * Default: .001.
    */
-  vtkSetClampMacro(Strength, double, 1e-12, 1.0);
+  vtkSetNumberMacro(Strength, 1e-12, 1.0);
   vtkGetMacro(Strength, double);
   ///@}
 
@@ -155,7 +156,7 @@ public:
    * How many modes carry the message, in parts of the points, in [0, 1]. EXTRACT needs that
    * of the embedding. Default: .07.
    */
-  vtkSetClampMacro(ModeFraction, double, 0.0, 1.0);
+  vtkSetNumberMacro(ModeFraction, 0.0, 1.0);
   vtkGetMacro(ModeFraction, double);
   ///@}
 

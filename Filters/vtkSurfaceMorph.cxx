@@ -34,6 +34,8 @@ namespace
 /// Up to this many key frames are used at a time.
 constexpr int WindowSize = 4;
 
+constexpr int MostWeights = 1000000;
+
 /// The key frames that matter at t, first and one past the last, of those at
 /// `parameters`: the two before and the two after.
 std::pair<int, int> WindowAt(double t, const std::vector<double>& parameters)
@@ -162,16 +164,22 @@ int vtkSurfaceMorph::RequestInformation(
 
 void vtkSurfaceMorph::SetNumberOfWeights(int count)
 {
+  if (count < 0 || count > MostWeights)
+  {
+    vtkErrorMacro("There are 0 to " << MostWeights << " weights; got " << count << ".");
+    return;
+  }
   std::vector<double> weights = this->Weights;
-  weights.resize(std::max(count, 0), 0.0);
+  weights.resize(count, 0.0);
   this->SetMember(this->Weights, weights);
 }
 
 void vtkSurfaceMorph::SetWeight(int keyFrame, double weight)
 {
-  if (keyFrame < 0)
+  if (keyFrame < 0 || keyFrame >= MostWeights)
   {
-    vtkErrorMacro("Key frames are numbered from 0; got " << keyFrame << ".");
+    vtkErrorMacro(
+      "Weights are numbered from 0 to " << MostWeights - 1 << "; got " << keyFrame << ".");
     return;
   }
   this->SetNumberOfWeights(std::max(keyFrame + 1, this->GetNumberOfWeights()));

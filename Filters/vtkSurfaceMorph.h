@@ -126,7 +126,7 @@ public:
    * Weights of all key frames, in place of Parameter and time: a blend shape of more than
    * two poses that does not shrink. They sum to 1; some may be negative, or more than 1.
    * Arrays are those of the key frame with the largest weight. None: 0 weights, the
-   * default.
+   * default; at most 1,000,000.
    */
   void SetNumberOfWeights(int count);
   int GetNumberOfWeights() const { return static_cast<int>(this->Weights.size()); }

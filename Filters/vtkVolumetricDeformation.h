@@ -32,6 +32,7 @@
 #ifndef vtkVolumetricDeformation_h
 #define vtkVolumetricDeformation_h
 
+#include "vtkSetNumberMacro.h" // For properties
 #include "vtkSurfaceDeformation.h"
 
 class vtkAlgorithmOutput;
@@ -69,10 +70,10 @@ public:
   /**
    * The distance between neighbors of the lattice in length units, >= 0. 0: the mean
    * length of the surface's edges, but at most two lattice points for each point of the
-   * surface. The lattice has at most 500000 points. Not used with a volume mesh. Default:
-   * 0.
+   * surface, and 500000 in all. A spacing of more points than that is an error. Not used with a
+   * volume mesh. Default: 0.
    */
-  vtkSetClampMacro(LatticeSpacing, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetNumberMacro(LatticeSpacing, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(LatticeSpacing, double);
   ///@}
 
