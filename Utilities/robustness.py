@@ -12,162 +12,22 @@ import argparse
 import collections
 import glob
 import json
-import math
 import os
 import signal
 import subprocess
 import sys
 
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import every_filter
+
+TASKS = list(every_filter.TASKS)
 SECONDS = 60
-DEFORMATIONS = ("AsRigidAsPossible", "Laplacian", "Multiresolution", "Poisson", "Pyramid",
-                "RotationInvariant", "ShapePreserving", "Similarity")
-MORPHS = ("DiscreteForms", "Isometric", "DeformationGradient", "Linear")
-LAPLACIAN = ("DifferentialCoordinates", "DifferentialReconstruction", "LaplacianSpectrum",
-             "LeastSquaresMesh", "HighPassQuantization")
-TASKS = ([name + "Deformation" for name in DEFORMATIONS]
-         + ["CurvatureError", "VolumeChange", "DiscreteForms", "FrameReconstruction"]
-         + ["SurfaceMorph " + name for name in MORPHS] + list(LAPLACIAN))
-
-
-def bounds_axis(surface):
-    """The longest axis of the bounding box of what cells use, with its two ends."""
-    bounds = [0.0] * 6
-    surface.GetCellsBounds(bounds)
-    axis = max(range(3), key=lambda i: bounds[2 * i + 1] - bounds[2 * i])
-    return axis, bounds[2 * axis], bounds[2 * axis + 1]
-
-
-def bent(surface, angle):
-    """A copy, bent by an angle in degrees over the length of its longest axis."""
-    import numpy
-    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
-    axis, low, high = bounds_axis(surface)
-    points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)
-    length = max(high - low, 1e-300)
-    turn = math.radians(angle) / length
-    along, up = points[:, axis] - low, points[:, (axis + 1) % 3]
-    radius = 1.0 / turn
-    result = points.copy()
-    result[:, axis] = low + (radius - up) * numpy.sin(along * turn)
-    result[:, (axis + 1) % 3] = radius - (radius - up) * numpy.cos(along * turn)
-    copy = vtkPolyData()
-    copy.DeepCopy(surface)
-    vtk_points = vtkPoints()
-    vtk_points.SetData(numpy_to_vtk(result, deep=True))
-    copy.SetPoints(vtk_points)
-    return copy
-
-
-def marked(surface, handles):
-    """The surface with an array Handle."""
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
-    array = numpy_to_vtk(handles, deep=True)
-    array.SetName("Handle")
-    copy = vtkPolyData()
-    copy.ShallowCopy(surface)
-    copy.GetPointData().AddArray(array)
-    return copy
-
-
-def with_handles(surface):
-    """The surface with its two ends marked: 1 and 2."""
-    import numpy
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-    axis, low, high = bounds_axis(surface)
-    along = vtk_to_numpy(surface.GetPoints().GetData())[:, axis]
-    handles = numpy.zeros(len(along), dtype=numpy.int32)
-    handles[along <= low + 0.15 * (high - low)] = 1
-    handles[along >= high - 0.15 * (high - low)] = 2
-    return marked(surface, handles)
-
-
-def used_points(surface):
-    """Those of cells, each with the first point of its component."""
-    parent = list(range(surface.GetNumberOfPoints()))
-
-    def root(i):
-        while parent[i] != i:
-            parent[i] = parent[parent[i]]
-            i = parent[i]
-        return i
-    used = set()
-    for cell in range(surface.GetNumberOfCells()):
-        points = surface.GetCell(cell).GetPointIds()
-        ids = [points.GetId(i) for i in range(points.GetNumberOfIds())]
-        used.update(ids)
-        for i in ids[1:]:
-            low, high = sorted((root(ids[0]), root(i)))
-            parent[high] = low
-    return {i: root(i) for i in used}
-
-
-def with_anchors(surface):
-    """The surface with the first point of each component and every hundredth marked."""
-    import numpy
-    handles = numpy.zeros(surface.GetNumberOfPoints(), dtype=numpy.int32)
-    handles[::100] = 1
-    handles[list(used_points(surface).values())] = 1
-    return marked(surface, handles)
-
-
-def set_up(vtkcartan, name, filter, surface):
-    """As many modes and anchors as a small surface has, and as many parts need."""
-    used = used_points(surface)
-    count = min(20, len(used))
-    if name == "LaplacianSpectrum":
-        filter.SetNumberOfModes(count)
-    elif name in ("LeastSquaresMesh", "HighPassQuantization"):
-        filter.SetNumberOfAnchors(max(count, len(set(used.values()))))
-    elif name == "DifferentialReconstruction":
-        coordinates = vtkcartan.vtkDifferentialCoordinates()
-        coordinates.SetInputData(with_anchors(surface))
-        coordinates.AddObserver("ErrorEvent", lambda *_: None)
-        coordinates.Update()
-        if coordinates.GetOutput().GetNumberOfPoints() > 0:
-            filter.SetInputData(coordinates.GetOutput())
-
-
-def end_motion(vtkcartan, surface):
-    """A turn of the far end by 40 degrees about the middle of the surface."""
-    axis, _, _ = bounds_axis(surface)
-    motion = vtkcartan.vtkHandleMotion()
-    motion.SetAxis(*[1.0 if i == (axis + 1) % 3 else 0.0 for i in range(3)])
-    motion.SetAngle(40.0)
-    motion.SetCenter(*surface.GetCenter())
-    return motion
-
-
-def make_filter(vtkcartan, task, surface):
-    name, _, method = task.partition(" ")
-    filter = getattr(vtkcartan, "vtk" + name)()
-    if name.endswith("Deformation"):
-        filter.SetInputData(with_handles(surface))
-        filter.SetHandleMotion(2, end_motion(vtkcartan, surface))
-    elif name == "SurfaceMorph":
-        filter.AddInputData(surface)
-        filter.AddInputData(bent(surface, 40.0))
-        getattr(filter, "SetMethodTo" + method)()
-        filter.SetParameter(0.5)
-    else:
-        filter.SetInputData(0, surface)
-        if name == "VolumeChange":
-            filter.SetInputData(1, bent(surface, 40.0))
-        if name in LAPLACIAN:
-            set_up(vtkcartan, name, filter, surface)
-        if name == "FrameReconstruction":
-            forms = vtkcartan.vtkDiscreteForms()
-            forms.SetInputData(surface)
-            filter.SetInputConnection(1, forms.GetOutputPort(1))
-    return filter
 
 
 def is_finite(output):
     """Whether points and arrays are, but for those that say NaN where nothing is."""
-    import numpy
-    from vtkmodules.util.numpy_support import vtk_to_numpy
     documented = ("AreaRatio", "EdgeLengthRatio", "LocalVolume", "LocalVolumeRatio")
     arrays = [output.GetPoints().GetData()]
     arrays += [output.GetPointData().GetArray(i)
@@ -176,7 +36,7 @@ def is_finite(output):
                for array in arrays if array and array.GetName() not in documented)
 
 
-def execute(filter, surface):
+def execute(task, filter, surface):
     """A result and what was said."""
     messages = collections.defaultdict(list)
 
@@ -191,7 +51,8 @@ def execute(filter, surface):
     output = filter.GetOutput()
     if messages["error"]:
         return "refused", messages["error"][0]
-    if output.GetNumberOfPoints() != surface.GetNumberOfPoints():
+    if (output.GetNumberOfPoints() != surface.GetNumberOfPoints()
+            and task not in every_filter.OTHER_POINTS):
         return "wrong", "a partial output"
     if not is_finite(output):
         return "wrong", "not finite"
@@ -222,7 +83,7 @@ def work(path, done):
             if surface.GetNumberOfPolys() == 0:
                 result = "refused", "no triangles"
             else:
-                result = execute(make_filter(vtkcartan, task, surface), surface)
+                result = execute(task, every_filter.make(task, surface), surface)
             signal.setitimer(signal.ITIMER_PROF, 0)
             say("end", state, task, surface.GetNumberOfPoints(), *result)
 

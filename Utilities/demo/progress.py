@@ -3,19 +3,14 @@
 surface of 416,002 points; and whether its progress ever runs back.
 
 Run it with pvpython and the variables of the tests, CARTAN_MESH_DIR and PYTHONPATH. Times
-are those of the processor, so that other programs do not count; names of filters restrict it:
-progress.py vtkPoissonDeformation.
+are those of the processor, so that other programs do not count; tasks of every_filter.py
+restrict it: progress.py PoissonDeformation "SurfaceMorph Linear".
 """
 import sys
 import time
 
-import vtkcartan
-from vtkcartan import vtkHandleMotion
-
+import every_filter
 import scan
-
-DEFORMATIONS = ("RotationInvariant", "ShapePreserving", "Poisson", "AsRigidAsPossible", "Pyramid",
-                "Multiresolution", "Laplacian", "Similarity")
 
 
 class Watch:
@@ -40,54 +35,20 @@ class Watch:
         self.last, self.value = now, value
 
 
-def chosen(name):
-    return len(sys.argv) < 2 or name.split(",")[0] in sys.argv[1:]
-
-
-def watch(name, filter):
-    if chosen(name):
-        Watch(name, filter)
+def update_inputs(filter):
+    """What is before the filter is not its own time."""
+    for port in range(filter.GetNumberOfInputPorts()):
+        for connection in range(filter.GetNumberOfInputConnections(port)):
+            filter.GetInputAlgorithm(port, connection).Update()
 
 
 def main():
-    fine = scan.armadillo(2)
-    print(f"{fine.GetOutput().GetNumberOfPoints()} points")
-    first = scan.mark_heights(fine, 1, -0.1, 0.1)
-    if chosen("vtkMarkHandle"):
-        Watch("vtkMarkHandle", first)
-    first.Update()
-    marked = scan.mark_heights(first, 2, 0.9, 1.1)
-    marked.Update()
-    motion = vtkHandleMotion()
-    motion.SetAxis(1, 0, 0)
-    motion.SetAngle(20)
-    for method in DEFORMATIONS:
-        name = f"vtk{method}Deformation"
-        if chosen(name):
-            filter = getattr(vtkcartan, name)()
-            filter.SetInputConnection(marked.GetOutputPort())
-            filter.SetHandleMotion(2, motion)
-            Watch(name, filter)
-    bent = vtkcartan.vtkRotationInvariantDeformation()
-    bent.SetInputConnection(marked.GetOutputPort())
-    bent.SetHandleMotion(2, motion)
-    bent.Update()
-    for kind in ("vtkCurvatureError", "vtkVolumeChange"):
-        measure = getattr(vtkcartan, kind)()
-        measure.SetInputConnection(bent.GetOutputPort())
-        measure.SetReferenceConnection(marked.GetOutputPort())
-        watch(kind, measure)
-    for kind in ("vtkDiscreteForms", "vtkPrepareSurface"):
-        tool = getattr(vtkcartan, kind)()
-        tool.SetInputConnection(marked.GetOutputPort())
-        watch(kind, tool)
-    for method in ("DiscreteForms", "Isometric", "DeformationGradient", "Linear"):
-        morph = vtkcartan.vtkSurfaceMorph()
-        getattr(morph, "SetMethodTo" + method)()
-        morph.AddInputConnection(marked.GetOutputPort())
-        morph.AddInputConnection(bent.GetOutputPort())
-        morph.SetParameter(0.5)
-        watch("vtkSurfaceMorph, " + method, morph)
+    surface = scan.armadillo(2).GetOutput()
+    print(f"{surface.GetNumberOfPoints()} points")
+    for task in sys.argv[1:] or every_filter.TASKS:
+        filter = every_filter.make(task, surface)
+        update_inputs(filter)
+        Watch(task, filter)
 
 
 main()
