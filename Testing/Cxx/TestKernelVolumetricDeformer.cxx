@@ -176,6 +176,28 @@ TEST(VolumetricDeformer, WallsOfCavitiesFollow)
   ASSERT_GT(lattice.rows(), 100);
 }
 
+TEST(VolumetricDeformer, FindsASpacingThatFits)
+{
+  const shapes::Shape shape = shapes::Icosphere(3);
+  const cartan::TriangleMesh mesh(shape.NumberOfVertices(), shape.Faces);
+  LatticeOptions options;
+  options.MostPoints = 100.0;
+  const auto added = [&]
+  {
+    return cartan::MakeLatticeGraph(mesh, shape.Positions, options).NumberOfNodes() -
+      shape.NumberOfVertices();
+  };
+  options.OuterLayer = false;
+  EXPECT_GT(added(), 50);
+  EXPECT_LE(added(), 100);
+  options.Spacing = 0.1;
+  const std::string refusal = RefusalOf(added);
+  const std::string advice = "Set LatticeSpacing to ";
+  ASSERT_NE(refusal.find(advice), std::string::npos) << refusal;
+  options.Spacing = std::stod(refusal.substr(refusal.find(advice) + advice.size()));
+  EXPECT_GT(added(), 50);
+}
+
 TEST(VolumetricDeformer, TheLatticeIsInside)
 {
   LatticeOptions options;

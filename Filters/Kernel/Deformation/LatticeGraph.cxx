@@ -99,9 +99,11 @@ private:
   void ChooseSpacing(const LatticeOptions& options)
   {
     const double volume = this->Body.GetVolume();
-    this->Spacing = options.Spacing > 0.0
-      ? options.Spacing
-      : std::max(MeanEdgeLength(this->Mesh, this->Rest), std::cbrt(0.5 * volume / this->UsedCount));
+    const double fitting =
+      1.1 * std::max(std::cbrt(volume / options.MostPoints), this->LeastSpacingOfBox());
+    this->Spacing = options.Spacing > 0.0 ? options.Spacing
+                                          : std::max({ MeanEdgeLength(this->Mesh, this->Rest),
+                                              std::cbrt(0.5 * volume / this->UsedCount), fitting });
     // At least one layer in each direction.
     const Eigen::Vector3d cells = (this->Box.sizes() / this->Spacing).cwiseMax(1.0);
     const double inside = volume / std::pow(this->Spacing, 3);
@@ -111,9 +113,7 @@ private:
       text << "A lattice of spacing " << this->Spacing << " has about " << inside
            << " points inside of the surface, in a box of " << cells.prod() << "; at most "
            << options.MostPoints << " and " << MostBoxPoints
-           << " fit in memory. Set LatticeSpacing to "
-           << 1.1 * std::max(std::cbrt(volume / options.MostPoints), this->LeastSpacingOfBox())
-           << " or more, or to 0.";
+           << " fit in memory. Set LatticeSpacing to " << fitting << " or more, or to 0.";
       throw Error(ErrorCode::TooLarge, text.str());
     }
     for (int axis = 0; axis < 3; ++axis)

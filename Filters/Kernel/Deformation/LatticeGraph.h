@@ -10,7 +10,7 @@ struct LatticeOptions
 {
   /// The distance between neighbors in length units. 0: the mean length of the
   /// surface's edges, but larger where that would make more than two points for each
-  /// vertex.
+  /// vertex, or more than MostPoints.
   double Spacing = 0.0;
   bool OuterLayer = true;
   LaplacianWeights Weights = LaplacianWeights::Cotangent; ///< of the surface's edges
