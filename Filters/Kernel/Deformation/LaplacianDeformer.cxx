@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/LaplacianDeformer.h"
 
-#include "Algebra/Rotation.h"
-#include "Algebra/SparseProduct.h"
+#include "Algebra/ClosestRotations.h"
 #include "Mesh/Geometry.h"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 namespace cartan
@@ -21,17 +17,6 @@ namespace
 /// surfaces by 40 and 120 degrees it is .0001 to .03, and where rounds diverge .6 to
 /// 10.
 constexpr double SettledMove = 0.05;
-
-/// The vertex and its one-ring.
-std::vector<int> ClosedRing(const TriangleMesh& mesh, int v)
-{
-  std::vector<int> ring{ v };
-  for (int d = mesh.RingBegin(v); d < mesh.RingEnd(v); ++d)
-  {
-    ring.push_back(mesh.Neighbor(d));
-  }
-  return ring;
-}
 
 /// Adds the vertices within two edges of v, v included, to `rings`, each once: those whose
 /// `lastSeen` is not `row`.
@@ -58,10 +43,10 @@ void AddTwoRing(
 }
 
 /// The sum over the points w of a ring of (s_w - s)(p_w - p)^T with the means p and s of the
-/// rest positions and the deformed ones; nothing where all move alike. As the p_w - p add up to
+/// rest positions and the deformed ones; false where all move alike. As the p_w - p add up to
 /// zero, it is that of the rest plus the sum of (d_w - d_v)(p_w - p)^T, v the first point.
-std::optional<Eigen::Matrix3d> RingCovariance(const int* begin, const int* end,
-  const Eigen::Vector3d& mean, const Points& rest, const Points& displacements)
+bool RingCovariance(const int* begin, const int* end, const Eigen::Vector3d& mean,
+  const Points& rest, const Points& displacements, Eigen::Map<Eigen::Matrix3d> covariance)
 {
   const double* const origin = displacements.row(*begin).data();
   double products[3][3] = {};
@@ -84,19 +69,8 @@ std::optional<Eigen::Matrix3d> RingCovariance(const int* begin, const int* end,
       }
     }
   }
-  if (isStill)
-  {
-    return {};
-  }
-  return Eigen::Map<const Eigen::Matrix3d>(products[0]);
-}
-
-/// d -> (s I + [h]x) d as a 3 x 4 matrix on (s, h).
-Eigen::Matrix<double, 3, 4> SimilarityOf(const Eigen::Vector3d& d)
-{
-  Eigen::Matrix<double, 3, 4> matrix;
-  matrix << d[0], 0.0, d[2], -d[1], d[1], -d[2], 0.0, d[0], d[2], d[1], -d[0], 0.0;
-  return matrix;
+  covariance = Eigen::Map<const Eigen::Matrix3d>(products[0]);
+  return !isStill;
 }
 
 /// The three coordinates of a point have the same neighbors. They make supernodes so large
@@ -123,198 +97,82 @@ LaplacianDeformer::LaplacianDeformer(HandleProblem problem, LaplacianRotations r
   this->Differential = this->System.Differential(this->System.Gather(*this->Problem.Rest))
                          .topRows(this->NumberOfRows());
   this->Transforms = Identities(this->NumberOfRows());
-  this->FindRings();
+  this->FindHandleCenters();
+  if (rotations == LaplacianRotations::Estimated)
+  {
+    this->FindTwoRings();
+  }
   if (rotations == LaplacianRotations::Implicit)
   {
+    this->FindRings();
     this->PrepareImplicit(context.Part(0.5, 1.0));
   }
   context.Report(1.0);
 }
 
-void LaplacianDeformer::FindRings()
+void LaplacianDeformer::FindTwoRings()
 {
   const TriangleMesh& mesh = *this->Problem.Mesh;
   const std::vector<int>& vertices = this->System.GetVertices();
-  if (this->Rotations == LaplacianRotations::Estimated)
-  {
-    std::vector<int> lastSeen(mesh.NumberOfVertices(), -1);
-    this->TwoRingOffsets.push_back(0);
-    for (int row = 0; row < this->NumberOfRows(); ++row)
-    {
-      AddTwoRing(mesh, vertices[row], row, lastSeen, this->TwoRings);
-      this->TwoRingOffsets.push_back(this->TwoRings.size());
-    }
-    this->TwoRingMeans.setZero(this->NumberOfRows(), 3);
-    for (int row = 0; row < this->NumberOfRows(); ++row)
-    {
-      const std::size_t begin = this->TwoRingOffsets[row];
-      const std::size_t end = this->TwoRingOffsets[row + 1];
-      for (std::size_t k = begin; k < end; ++k)
-      {
-        this->TwoRingMeans.row(row) +=
-          this->Problem.Rest->row(this->TwoRings[k]) / static_cast<double>(end - begin);
-      }
-    }
-  }
-  if (this->Rotations == LaplacianRotations::Implicit)
-  {
-    std::vector<int> lastRow(this->System.NumberOfLocals(), -1);
-    std::vector<int> local(mesh.NumberOfVertices(), -1);
-    for (int i = 0; i < this->System.NumberOfLocals(); ++i)
-    {
-      local[vertices[i]] = i;
-    }
-    for (int row = 0; row < this->NumberOfRows(); ++row)
-    {
-      this->Rings.push_back(ClosedRing(mesh, vertices[row]));
-      std::vector<int>& ring = this->Rings.back();
-      for (int& vertex : ring)
-      {
-        vertex = local[vertex];
-      }
-      // Several edges may lead to one vertex where vertices are joined.
-      const auto isKnown = [&lastRow, row](int i) { return std::exchange(lastRow[i], row) == row; };
-      ring.erase(std::remove_if(ring.begin(), ring.end(), isKnown), ring.end());
-    }
-  }
-}
-
-/// Three equations for each row, (L y)_v - (s I + [h]x) (L x)_v in the weight of
-/// M^-1/2, over three unknowns for each local vertex; keeps the fits of (s, h).
-SparseMatrix LaplacianDeformer::ImplicitEquations()
-{
-  const Points rest = this->System.Gather(*this->Problem.Rest);
-  const SparseMatrix& laplacian = this->System.GetLaplacian();
-  std::int64_t numberOfEntries = 0; // 3 x 3 for each vertex of each ring
-  for (const std::vector<int>& ring : this->Rings)
-  {
-    numberOfEntries += 9 * static_cast<std::int64_t>(ring.size());
-  }
-  RequireIndexable(numberOfEntries, "The system of implicit rotations");
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(numberOfEntries);
+  std::vector<int> lastSeen(mesh.NumberOfVertices(), -1);
+  this->TwoRingOffsets.push_back(0);
   for (int row = 0; row < this->NumberOfRows(); ++row)
   {
-    const std::vector<int>& ring = this->Rings[row];
-    // The best (s, h) and translation for given positions y of the ring:
-    // (s I + [h]x) (x_j - mean x) = y_j - mean y. Centered on the mean, the
-    // translation drops out.
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const int w : ring)
-    {
-      mean += rest.row(w).transpose() / static_cast<double>(ring.size());
-    }
-    Eigen::MatrixXd design(3 * ring.size(), 4);
-    for (std::size_t k = 0; k < ring.size(); ++k)
-    {
-      design.middleRows<3>(3 * static_cast<Eigen::Index>(k)) =
-        SimilarityOf(rest.row(ring[k]).transpose() - mean);
-    }
-    // The columns of the design have mean zero, so the mean of y drops out too.
-    Eigen::MatrixXd fit = design.completeOrthogonalDecomposition().pseudoInverse();
-    const double weight = std::sqrt(this->System.GetInverseMass()[row]);
-    // L is symmetric, and stored by columns.
-    const Eigen::Vector3d integrated = (laplacian.col(row).transpose() * rest).transpose();
-    const Eigen::MatrixXd turned = SimilarityOf(integrated) * fit; // 3 x 3 k
-    for (std::size_t k = 0; k < ring.size(); ++k)
-    {
-      const double l = laplacian.coeff(row, ring[k]);
-      for (int r = 0; r < 3; ++r)
-      {
-        for (int c = 0; c < 3; ++c)
-        {
-          const double value = (r == c ? l : 0.0) - turned(r, 3 * static_cast<Eigen::Index>(k) + c);
-          entries.emplace_back(3 * row + r, 3 * ring[k] + c, weight * value);
-        }
-      }
-    }
-    this->Fits.push_back(std::move(fit));
+    AddTwoRing(mesh, vertices[row], row, lastSeen, this->TwoRings);
+    this->TwoRingOffsets.push_back(this->TwoRings.size());
   }
-  SparseMatrix equations(3 * this->NumberOfRows(), 3 * this->System.NumberOfLocals());
-  equations.setFromTriplets(entries.begin(), entries.end());
-  return equations;
-}
-
-void LaplacianDeformer::PrepareImplicit(const ExecutionContext& context)
-{
-  SparseMatrix normal;
+  this->TwoRingMeans.setZero(this->NumberOfRows(), 3);
+  for (int row = 0; row < this->NumberOfRows(); ++row)
   {
-    const SparseMatrix equations = this->ImplicitEquations();
-    context.Report(0.3);
-    CheckedProduct(equations.transpose(), equations, "The system of implicit rotations")
-      .swap(normal);
+    const std::size_t begin = this->TwoRingOffsets[row];
+    const std::size_t end = this->TwoRingOffsets[row + 1];
+    for (std::size_t k = begin; k < end; ++k)
+    {
+      this->TwoRingMeans.row(row) +=
+        this->Problem.Rest->row(this->TwoRings[k]) / static_cast<double>(end - begin);
+    }
   }
-  this->ImplicitSystem.Factorize(
-    std::move(normal), this->System.GetAnchors().Repeated(3), context.Part(0.3, 1.0));
 }
 
 void LaplacianDeformer::EstimateRotations(
   const Points& displacements, const ExecutionContext& context)
 {
-  const Points& rest = *this->Problem.Rest;
-  context.For(this->NumberOfRows(),
-    [&](int begin, int end)
-    {
-      for (int row = begin; row < end; ++row)
-      {
-        const std::optional<Eigen::Matrix3d> covariance =
-          RingCovariance(this->TwoRings.data() + this->TwoRingOffsets[row],
-            this->TwoRings.data() + this->TwoRingOffsets[row + 1],
-            this->TwoRingMeans.row(row).transpose(), rest, displacements);
-        auto transform = MatrixAt(this->Transforms, row);
-        // Exact where nothing moves: differential coordinates next to short edges
-        // would make much of the rounding of a fit. Elsewhere the last round's rotation is
-        // near this one's.
-        transform = covariance ? ProjectOnRotations(*covariance, transform)
-                               : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
-      }
-    });
-}
-
-void LaplacianDeformer::SolveImplicitly(const Points& displacements)
-{
-  const Points locals = this->System.Gather(displacements);
-  // Three unknowns side by side for each local vertex. The rest fulfills the
-  // equations, so displacements have no right-hand side.
-  Field unknowns = Eigen::Map<const Field>(locals.data(), locals.size(), 1);
-  this->ImplicitSystem.Interpolate(unknowns);
-  for (int row = 0; row < this->NumberOfRows(); ++row)
+  const auto readCovariance = [&](int row, Eigen::Map<Eigen::Matrix3d> covariance)
   {
-    const std::vector<int>& ring = this->Rings[row];
-    Eigen::VectorXd ofRing(3 * ring.size());
-    for (std::size_t k = 0; k < ring.size(); ++k)
-    {
-      ofRing.segment<3>(3 * static_cast<Eigen::Index>(k)) =
-        unknowns.middleRows<3>(3 * static_cast<Eigen::Index>(ring[k]));
-    }
-    const Eigen::Vector4d change = this->Fits[row] * ofRing;
-    if (change.isZero(0.0))
-    {
-      MatrixAt(this->Transforms, row).setIdentity();
-      continue;
-    }
-    const double s = 1.0 + change[0];
-    Eigen::Matrix3d transform;
-    transform << s, -change[3], change[2], change[3], s, -change[1], -change[2], change[1], s;
-    MatrixAt(this->Transforms, row) = ProjectOnRotations(transform);
-  }
+    // Exact where nothing moves: differential coordinates next to short edges
+    // would make much of the rounding of a fit.
+    MatrixAt(this->Transforms, row).setIdentity();
+    return RingCovariance(this->TwoRings.data() + this->TwoRingOffsets[row],
+      this->TwoRings.data() + this->TwoRingOffsets[row + 1],
+      this->TwoRingMeans.row(row).transpose(), *this->Problem.Rest, displacements, covariance);
+  };
+  const auto writeTransform = [&](int row, const Eigen::Map<Eigen::Matrix3d>& rotation)
+  { MatrixAt(this->Transforms, row) = rotation; };
+  context.For(this->NumberOfRows(),
+    [&](int begin, int end) { ForClosestRotations(begin, end, readCovariance, writeTransform); });
 }
 
 /// L (T - I) d is what displacements have on the right where positions have L T d;
 /// `displacements` (#V x 3) has the handles' and gets the unknowns', from
 /// `targetsOfLocals` where those are held softly.
-void LaplacianDeformer::SolveRotated(const Points& targetsOfLocals, Points& displacements) const
+void LaplacianDeformer::SolveRotated(
+  const Points& targetsOfLocals, Points& displacements, const ExecutionContext& context) const
 {
   for (int i = 0; i < this->System.NumberOfUnknowns(); ++i)
   {
     displacements.row(this->System.GetVertices()[i]) = targetsOfLocals.row(i);
   }
   Points turned = Points::Zero(this->System.NumberOfLocals(), 3);
-  for (int row = 0; row < this->NumberOfRows(); ++row)
-  {
-    const Eigen::Vector3d differential = this->Differential.row(row);
-    turned.row(row) = (MatrixAt(this->Transforms, row) * differential - differential).transpose();
-  }
+  context.For(this->NumberOfRows(),
+    [&](int begin, int end)
+    {
+      for (int row = begin; row < end; ++row)
+      {
+        const Eigen::Vector3d differential = this->Differential.row(row);
+        turned.row(row) =
+          (MatrixAt(this->Transforms, row) * differential - differential).transpose();
+      }
+    });
   this->System.Solve(this->System.GetLaplacian() * turned, displacements);
 }
 
@@ -359,13 +217,13 @@ void LaplacianDeformer::DeformRelative(const HandleTargets& targets, bool wantTr
   const Points targetsOfLocals = this->System.Gather(displacements);
   if (this->Rotations == LaplacianRotations::Implicit)
   {
-    this->SolveImplicitly(displacements);
+    this->FindImplicitRotations(targets, displacements, context);
   }
   this->Unsettled.clear();
   if (this->Rotations == LaplacianRotations::Implicit ||
     !this->SumHandleFields(targets, displacements, context))
   {
-    this->SolveRotated(targetsOfLocals, displacements);
+    this->SolveRotated(targetsOfLocals, displacements, context);
   }
   Points earlier = this->System.Gather(displacements);
   const bool isEstimated = this->Rotations == LaplacianRotations::Estimated && earlier.rows() > 0;
@@ -375,7 +233,7 @@ void LaplacianDeformer::DeformRelative(const HandleTargets& targets, bool wantTr
   {
     context.Report(static_cast<double>(round) / rounds);
     this->EstimateRotations(displacements, context);
-    this->SolveRotated(targetsOfLocals, displacements);
+    this->SolveRotated(targetsOfLocals, displacements, context);
     Points locals = this->System.Gather(displacements);
     const Eigen::VectorXd moves = (locals - earlier).rowwise().norm();
     if (round == rounds - 1)

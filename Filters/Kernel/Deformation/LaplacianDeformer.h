@@ -26,7 +26,8 @@ enum class LaplacianRotations
 /// positions, so that one system over 3 #V unknowns finds both (Sorkine et al.,
 /// Laplacian Surface Editing, 2004, Eq. 7 of the survey). Its linearized
 /// rotations change the size; a second solve takes the rotation of each T_i and
-/// leaves its scale.
+/// leaves its scale. Without targets vertex by vertex, and up to four moving handles, the (s, h)
+/// are sums over fields of the handles instead, so that a motion solves for positions alone.
 ///
 /// All solves are for displacements from the rest, so that rounding is in parts of
 /// the motion and none leaves every point exactly where it is.
@@ -57,8 +58,8 @@ public:
   {
     return this->GetBaseBytes() + this->System.GetBytes() + this->ImplicitSystem.GetBytes() +
       TotalBytes(this->MovingHandles, this->Differential, this->Rings, this->TwoRings,
-        this->TwoRingOffsets, this->TwoRingMeans, this->HandleFields, this->HandleCenters,
-        this->Transforms, this->Fits);
+        this->TwoRingOffsets, this->TwoRingMeans, this->HandleFields, this->SimilarityFields,
+        this->HandleCenters, this->Transforms, this->Fits);
   }
 
 protected:
@@ -70,17 +71,24 @@ private:
   /// their neighbors, which are the first locals of the system.
   int NumberOfRows() const { return this->System.NumberWithin(1); }
 
+  void FindHandleCenters();
+  void FindTwoRings();
   void FindRings();
   void PrepareImplicit(const ExecutionContext& context);
   SparseMatrix ImplicitEquations();
   void EstimateRotations(const Points& displacements, const ExecutionContext& context);
-  void SolveImplicitly(const Points& displacements);
+  Field SolveSimilarities(Field unknowns) const;
+  void ComputeSimilarityFields();
+  /// Writes Transforms; `displacements` (#V x 3) has those of handles.
+  void FindImplicitRotations(
+    const HandleTargets& targets, const Points& displacements, const ExecutionContext& context);
   /// Writes the displacements of the unknowns that differential coordinates as they are have,
   /// without a solve; false where there are no fields for that.
   bool SumHandleFields(
     const HandleTargets& targets, Points& displacements, const ExecutionContext& context);
   void ComputeHandleFields();
-  void SolveRotated(const Points& targetsOfLocals, Points& displacements) const;
+  void SolveRotated(
+    const Points& targetsOfLocals, Points& displacements, const ExecutionContext& context) const;
   /// `moves` (#locals) is how far the last round has moved them, `before` the
   /// farthest move of the round before.
   void WarnIfUnsettled(const Eigen::VectorXd& moves, double before);
@@ -103,6 +111,9 @@ private:
   /// Of each moving handle k: g_k, 3 numbers, and h_k (SumHandleFields); #unknowns x 4 #Moving,
   /// empty until first needed.
   Field HandleFields;
+  /// Implicit, in their place: (s - 1, h) of each number of a motion (ComputeSimilarityFields);
+  /// #rows x 48 #Moving.
+  Field SimilarityFields;
   std::vector<Eigen::Vector3d> HandleCenters;
   /// Implicit: (s, h) of each row as a linear function of the positions of its
   /// ring, 4 x 3 k.

@@ -56,6 +56,24 @@ bool LaplacianDeformer::SumHandleFields(
   return true;
 }
 
+void LaplacianDeformer::FindHandleCenters()
+{
+  this->HandleCenters.assign(this->Problem.Moving.size(), Eigen::Vector3d::Zero());
+  std::vector<double> counts(this->HandleCenters.size(), 0.0);
+  for (const int v : this->System.GetVertices())
+  {
+    if (const int k = this->MovingHandles[v]; k >= 0)
+    {
+      this->HandleCenters[k] += this->Problem.Rest->row(v).transpose();
+      counts[k] += 1.0;
+    }
+  }
+  for (std::size_t k = 0; k < counts.size(); ++k)
+  {
+    this->HandleCenters[k] /= std::max(counts[k], 1.0);
+  }
+}
+
 void LaplacianDeformer::ComputeHandleFields()
 {
   const Points& rest = *this->Problem.Rest;
@@ -63,20 +81,8 @@ void LaplacianDeformer::ComputeHandleFields()
   const auto numberOfMoving = static_cast<int>(this->Problem.Moving.size());
   const Points zero = Points::Zero(this->System.NumberOfLocals(), 3);
   this->HandleFields.resize(this->System.NumberOfUnknowns(), 4 * numberOfMoving);
-  this->HandleCenters.clear();
   for (int k = 0; k < numberOfMoving; ++k)
   {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    double count = 0.0;
-    for (const int v : vertices)
-    {
-      if (this->MovingHandles[v] == k)
-      {
-        sum += rest.row(v).transpose();
-        count += 1.0;
-      }
-    }
-    this->HandleCenters.emplace_back(sum / std::max(count, 1.0));
     // One of them for the three coordinates, one for the constant.
     Points values[2] = { Points::Zero(rest.rows(), 3), Points::Zero(rest.rows(), 3) };
     for (const int v : vertices)

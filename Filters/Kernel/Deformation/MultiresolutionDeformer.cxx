@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/MultiresolutionDeformer.h"
 
-#include "Algebra/Rotation.h"
+#include "Algebra/ClosestRotations.h"
 #include "Differential/RotationFit.h"
 
 #include <Eigen/Eigenvalues>
@@ -56,11 +56,11 @@ double RingRadius(const TriangleMesh& mesh, const Points& points, int v)
   return std::sqrt(2.0 * std::max(0.0, spectrum.eigenvalues()[1]) / std::max(1, valence));
 }
 
-/// What FitRotations has at one vertex, at no cost for the others, minus the
-/// identity; exactly zero where the displacements are all the same. `normal` is that
-/// of the reference.
-Eigen::Matrix3d FitChange(const TriangleMesh& mesh, const Points& reference,
-  const Eigen::RowVector3d& normal, const Points& displacements, int v)
+/// The matrix whose closest rotation FitRotations has at one vertex, at no cost for the others;
+/// false where the displacements are all the same. `normal` is that of the reference.
+bool FrameCovariance(const TriangleMesh& mesh, const Points& reference,
+  const Eigen::RowVector3d& normal, const Points& displacements, int v,
+  Eigen::Map<Eigen::Matrix3d> frame)
 {
   struct Edge
   {
@@ -105,11 +105,12 @@ Eigen::Matrix3d FitChange(const TriangleMesh& mesh, const Points& reference,
   }
   if (isStill || !(size > 0.0))
   {
-    return Eigen::Matrix3d::Zero();
+    return false;
   }
   // The edges of a flat ring leave the rotation to rounding; the normal settles it.
   covariance += size * NormalOf(areaVector, squaredEdges) * normal;
-  return ProjectOnRotations(covariance / size) - Eigen::Matrix3d::Identity();
+  frame = covariance / size;
+  return true;
 }
 }
 
@@ -257,29 +258,30 @@ void MultiresolutionDeformer::FitFrames(
   const int numberOfFrames = static_cast<int>(this->RestNormals.rows());
   const std::vector<int>& vertices = this->System.GetVertices();
   this->Changes.resize(numberOfFrames, 9);
+  const auto readFrame = [&](int i, Eigen::Map<Eigen::Matrix3d> frame)
+  {
+    MatrixAt(this->Changes, i).setZero();
+    return FrameCovariance(*this->Problem.Mesh, this->RestBase, this->RestNormals.row(i),
+      displacements, vertices[i], frame);
+  };
+  const auto writeChange = [&](int i, const Eigen::Map<Eigen::Matrix3d>& rotation)
+  { MatrixAt(this->Changes, i) = rotation - Eigen::Matrix3d::Identity(); };
   context.For(numberOfFrames,
-    [&](int begin, int end)
-    {
-      for (int i = begin; i < end; ++i)
-      {
-        MatrixAt(this->Changes, i) = FitChange(*this->Problem.Mesh, this->RestBase,
-          this->RestNormals.row(i), displacements, vertices[i]);
-      }
-    });
+    [&](int begin, int end) { ForClosestRotations(begin, end, readFrame, writeChange); });
   if (this->NumberOfSpread == 0)
   {
     return;
   }
   this->Spreading.Interpolate(this->Changes);
-  for (const int i : this->Spreading.GetFree())
-  {
-    Eigen::Map<Eigen::Matrix3d> change = MatrixAt(this->Changes, i);
-    if (!change.isZero(0.0))
+  const std::vector<int>& spread = this->Spreading.GetFree();
+  ForClosestRotations(
+    0, static_cast<int>(spread.size()),
+    [&](int k, Eigen::Map<Eigen::Matrix3d> frame)
     {
-      change =
-        ProjectOnRotations(Eigen::Matrix3d::Identity() + change) - Eigen::Matrix3d::Identity();
-    }
-  }
+      frame = Eigen::Matrix3d::Identity() + MatrixAt(this->Changes, spread[k]);
+      return !MatrixAt(this->Changes, spread[k]).isZero(0.0);
+    },
+    [&](int k, const Eigen::Map<Eigen::Matrix3d>& rotation) { writeChange(spread[k], rotation); });
 }
 
 void MultiresolutionDeformer::DeformRelative(const HandleTargets& targets, bool wantTransforms,

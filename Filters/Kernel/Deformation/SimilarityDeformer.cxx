@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Deformation/SimilarityDeformer.h"
 
-#include "Algebra/Rotation.h"
+#include "Algebra/ClosestRotations.h"
 #include "Deformation/JoinedVertices.h"
 #include "Differential/Laplacian.h"
 #include "Differential/RotationFit.h"
@@ -107,13 +107,6 @@ int SimilarityDeformer::GetNumberOfFactorizations() const
     (this->Edges ? this->Edges->GetNumberOfFactorizations() : 0);
 }
 
-void SimilarityDeformer::SetTransform(int vertex, const Eigen::Matrix3d& gradient)
-{
-  this->Scales[vertex] = StableNorm(gradient) / std::sqrt(3.0);
-  MatrixAt(this->Transforms, vertex) =
-    (this->ScaleFeatures ? this->Scales[vertex] : 1.0) * ProjectOnRotations(gradient);
-}
-
 void SimilarityDeformer::ComputeTransforms(
   const HandleTargets& targets, const ExecutionContext& context)
 {
@@ -121,22 +114,22 @@ void SimilarityDeformer::ComputeTransforms(
   this->System.Solve(this->Problem, targets, context.Part(0.0, 0.6));
   context.Report(0.6);
 
-  const int numberOfVertices = this->Problem.Mesh->NumberOfVertices();
-  context.For(numberOfVertices,
-    [&](int begin, int end)
+  const std::vector<int>& moving = this->System.GetMovingHandles();
+  const auto readGradient = [&](int v, Eigen::Map<Eigen::Matrix3d> gradient)
+  {
+    const bool isVariable = gradients.IsVariable(v);
+    if (!isVariable && moving[v] < 0)
     {
-      for (int v = begin; v < end; ++v)
-      {
-        if (gradients.IsVariable(v))
-        {
-          this->SetTransform(v, this->System.Gradient(v));
-        }
-        else if (this->System.GetMovingHandles()[v] >= 0)
-        {
-          this->SetTransform(v, HandleTransform(targets, v, this->System.GetMovingHandles()[v]));
-        }
-      }
-    });
+      return false;
+    }
+    gradient = isVariable ? this->System.Gradient(v) : HandleTransform(targets, v, moving[v]);
+    this->Scales[v] = StableNorm(gradient) / std::sqrt(3.0);
+    return true;
+  };
+  const auto writeTransform = [&](int v, const Eigen::Map<Eigen::Matrix3d>& rotation)
+  { MatrixAt(this->Transforms, v) = (this->ScaleFeatures ? this->Scales[v] : 1.0) * rotation; };
+  context.For(this->Problem.Mesh->NumberOfVertices(),
+    [&](int begin, int end) { ForClosestRotations(begin, end, readGradient, writeTransform); });
 }
 
 void SimilarityDeformer::RefitTransforms(

@@ -133,7 +133,6 @@ private:
   };
 
   void FactorizePositions(const ExecutionContext& context);
-  void SetTransform(int vertex, const Eigen::Matrix3d& gradient);
   void ComputeTransforms(const HandleTargets& targets, const ExecutionContext& context);
   void RefitTransforms(const Points& positions, bool goesBeyond, const ExecutionContext& context);
   void Reconstruct(
