@@ -189,11 +189,6 @@ std::shared_ptr<const cartan::VolumeModel> vtkFrameDeformation::KeepPieceModel(
 
 void vtkFrameDeformation::ConfigureTable(cartan::FrameDeformer& deformer, double diagonal) const
 {
-  if (!(std::isfinite(this->TurnRange) && std::isfinite(this->TurnTolerance)))
-  {
-    throw cartan::Error(
-      cartan::ErrorCode::BadInput, "TurnRange and TurnTolerance must be finite numbers.");
-  }
   deformer.SetTurnTable(this->TabulateTurns
       ? cartan::TurnTable::Options{ this->TurnRange / 180.0 * cartan::Pi,
           this->TurnTolerance * diagonal }

@@ -136,7 +136,7 @@ TEST(Progress, OfSimilarityNeverRunsBackWhereTheMotionFactorizes)
 
 TEST(Progress, OfATreeOfManyTrianglesNeverRunsBack)
 {
-  const shapes::Shape shape = shapes::Bar(100, 100, 100, { 1.0, 2.0, 3.0 }, true);
+  const shapes::Shape shape = shapes::Bar(150, 150, 150, { 1.0, 2.0, 3.0 }, true);
   Recorder recorder;
   const cartan::RayTree tree(shape.Faces, shape.Positions, recorder.Context());
   EXPECT_GT(recorder.Fractions.size(), 4U);
