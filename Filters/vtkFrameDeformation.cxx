@@ -15,7 +15,6 @@
 
 #include "vtkPolyData.h"
 
-#include <cmath>
 #include <limits>
 
 namespace
