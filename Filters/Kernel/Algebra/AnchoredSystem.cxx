@@ -86,7 +86,9 @@ void AnchoredSystem::FactorizeFit(const SparseMatrix& laplacian, const Eigen::Ve
   {
     counts[i] = anchors.IsHard[i] ? 0.0 : 1.0;
   }
-  const SparseMatrix weighted = inverseMass.cwiseProduct(counts).asDiagonal() * laplacian;
+  // A vector of its own: Eigen evaluates an expression anew for each column.
+  const Eigen::VectorXd weights = inverseMass.cwiseProduct(counts);
+  const SparseMatrix weighted = weights.asDiagonal() * laplacian;
   this->Factorize(CheckedProduct(transposed, weighted, "The system of the fit"), anchors, context);
   this->RightHandSide = transposed * counts.asDiagonal();
 }

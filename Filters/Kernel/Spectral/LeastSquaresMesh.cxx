@@ -157,7 +157,9 @@ void LeastSquaresMesh::Prepare(const TriangleMesh& mesh, const Points& points, i
   // |v_i - mean of its ring|^2 is the square of row i of D^-1 L.
   const SparseMatrix laplacian =
     Laplacian(mesh, Eigen::VectorXd::Ones(mesh.NumberOfDirectedEdges()));
-  const SparseMatrix weighted = inverseValences.cwiseAbs2().asDiagonal() * laplacian;
+  // A vector of its own: Eigen evaluates an expression anew for each column.
+  const Eigen::VectorXd weights = inverseValences.cwiseAbs2();
+  const SparseMatrix weighted = weights.asDiagonal() * laplacian;
   auto system = std::make_shared<AnchoredSystem>(backend);
   system->Factorize(CheckedProduct(laplacian, weighted, "The system of the least-squares mesh"),
     anchors, context.Part(0.0, 0.9));
