@@ -48,9 +48,9 @@ def execute(task, filter, surface):
     filter.AddObserver("ErrorEvent", observe("error"))
     filter.AddObserver("WarningEvent", observe("warning"))
     filter.Update()
-    output = filter.GetOutput()
     if messages["error"]:
         return "refused", messages["error"][0]
+    output = filter.GetOutput()
     if (output.GetNumberOfPoints() != surface.GetNumberOfPoints()
             and task not in every_filter.OTHER_POINTS):
         return "wrong", "a partial output"

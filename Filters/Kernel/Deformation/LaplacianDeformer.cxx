@@ -137,7 +137,7 @@ void LaplacianDeformer::FindTwoRings()
 void LaplacianDeformer::EstimateRotations(
   const Points& displacements, const ExecutionContext& context)
 {
-  const auto readCovariance = [&](int row, Eigen::Map<Eigen::Matrix3d> covariance)
+  const auto readCovariance = [&](int row, const Eigen::Map<Eigen::Matrix3d>& covariance)
   {
     // Exact where nothing moves: differential coordinates next to short edges
     // would make much of the rounding of a fit.

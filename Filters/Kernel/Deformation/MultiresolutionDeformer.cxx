@@ -258,7 +258,7 @@ void MultiresolutionDeformer::FitFrames(
   const int numberOfFrames = static_cast<int>(this->RestNormals.rows());
   const std::vector<int>& vertices = this->System.GetVertices();
   this->Changes.resize(numberOfFrames, 9);
-  const auto readFrame = [&](int i, Eigen::Map<Eigen::Matrix3d> frame)
+  const auto readFrame = [&](int i, const Eigen::Map<Eigen::Matrix3d>& frame)
   {
     MatrixAt(this->Changes, i).setZero();
     return FrameCovariance(*this->Problem.Mesh, this->RestBase, this->RestNormals.row(i),

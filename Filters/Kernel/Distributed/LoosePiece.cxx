@@ -276,6 +276,7 @@ void ExchangeTriangles(SurfacePiece& piece, const std::unordered_map<int, Shared
     }
   }
   std::vector<int> points;
+  points.reserve(shared.size());
   for (const auto& entry : shared)
   {
     points.push_back(entry.first);

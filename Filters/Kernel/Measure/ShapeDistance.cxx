@@ -245,10 +245,10 @@ std::vector<int> ShapeDistances::LooksAt(
 {
   Neighborhood neighborhood(mesh, reference);
   neighborhood.CollectBall(vertex);
-  std::vector<int> ids;
+  std::vector<int> ids(neighborhood.Size());
   for (int k = 0; k < neighborhood.Size(); ++k)
   {
-    ids.push_back(neighborhood.Vertex(k));
+    ids[k] = neighborhood.Vertex(k);
   }
   return ids;
 }
