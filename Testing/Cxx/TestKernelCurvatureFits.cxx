@@ -75,7 +75,7 @@ Eigen::Vector3d Wave(const Eigen::Vector3d& p)
     Eigen::Vector3d(std::sin(1.3 * p[1]), std::cos(1.1 * p[2] + 0.4), std::sin(1.2 * p[0] + 0.3));
 }
 
-struct Exact
+struct PrincipalCurvatures
 {
   double Maximum;
   double Minimum;
@@ -83,12 +83,12 @@ struct Exact
 
 /// The largest error of the principal curvatures, relative to the larger of them.
 double LargestError(const Curvatures& curvatures, const Points& reference,
-  const std::function<Exact(const Eigen::Vector3d&)>& exact)
+  const std::function<PrincipalCurvatures(const Eigen::Vector3d&)>& exact)
 {
   double largest = 0.0;
   for (Eigen::Index v = 0; v < reference.rows(); ++v)
   {
-    const Exact expected = exact(reference.row(v).transpose());
+    const PrincipalCurvatures expected = exact(reference.row(v).transpose());
     const double size = std::max(std::abs(expected.Maximum), std::abs(expected.Minimum));
     largest = std::max({ largest, std::abs(curvatures.Maximum[v] - expected.Maximum) / size,
       std::abs(curvatures.Minimum[v] - expected.Minimum) / size });
@@ -125,8 +125,8 @@ TEST(CurvatureFits, RolledAndBentPlanesHaveTheirClosedFormulas)
     const shapes::Shape plane = shapes::Plane(24, 0.8, jitter);
     const auto mesh = MeshOf(plane);
     const CurvatureFits fits(mesh, plane.Positions);
-    const auto error = [&](
-                         const Map& map, const std::function<Exact(const Eigen::Vector3d&)>& exact)
+    const auto error =
+      [&](const Map& map, const std::function<PrincipalCurvatures(const Eigen::Vector3d&)>& exact)
     {
       const Points current = Mapped(plane.Positions, map);
       const double found = LargestError(fits.Measure(current), plane.Positions, exact);
@@ -139,28 +139,32 @@ TEST(CurvatureFits, RolledAndBentPlanesHaveTheirClosedFormulas)
     {
       EXPECT_LT(error([&](const Eigen::Vector3d& p) { return RollToCylinder(p, radius); },
                   [&](const Eigen::Vector3d&) {
-                    return Exact{ 1.0 / radius, 0.0 };
+                    return PrincipalCurvatures{ 1.0 / radius, 0.0 };
                   }),
         1e-3);
     }
     EXPECT_LT(error(RollToCone,
                 [](const Eigen::Vector3d& p) {
-                  return Exact{ std::sqrt(3.0) / std::hypot(p[0] + 2.0, p[1]), 0.0 };
+                  return PrincipalCurvatures{ std::sqrt(3.0) / std::hypot(p[0] + 2.0, p[1]), 0.0 };
                 }),
       0.05);
-    EXPECT_LT(error(BendToSphere, [](const Eigen::Vector3d&) { return Exact{ 1.0, 1.0 }; }), 1e-5);
+    EXPECT_LT(error(BendToSphere,
+                [](const Eigen::Vector3d&) {
+                  return PrincipalCurvatures{ 1.0, 1.0 };
+                }),
+      1e-5);
     EXPECT_LT(error(BendToTorus,
                 [](const Eigen::Vector3d& p)
                 {
                   const double cosine = std::cos(p[1] / 0.7);
-                  return Exact{ 1.0 / 0.7, cosine / (2.0 + 0.7 * cosine) };
+                  return PrincipalCurvatures{ 1.0 / 0.7, cosine / (2.0 + 0.7 * cosine) };
                 }),
       0.05);
     EXPECT_LT(error(BendToCatenoid,
                 [](const Eigen::Vector3d& p)
                 {
                   const double curvature = 1.0 / (std::cosh(p[1]) * std::cosh(p[1]));
-                  return Exact{ curvature, -curvature };
+                  return PrincipalCurvatures{ curvature, -curvature };
                 }),
       0.05);
   }
